@@ -5,8 +5,8 @@ const VERSION = "development";
 
 const CACHE = `enroute-${VERSION}`;
 
-// A version is kept whole or not at all. It takes over when no tab shows an earlier one any more, so that the parts
-// of a running page always fit each other.
+// A version is kept whole or not at all. It takes over when no tab shows an earlier one any more, or when the only tab asks
+// for it while it starts, so that the parts of a running page always fit each other.
 self.addEventListener("install", (event) => {
   event.waitUntil(
     caches.open(CACHE).then((cache) => cache.addAll(FILES.map((file) => new Request(file, { cache: "reload" })))),
@@ -22,6 +22,18 @@ self.addEventListener("activate", (event) => {
     }),
   );
 });
+
+self.addEventListener("message", (event) => {
+  if (event.data === "take over") event.waitUntil(takeOver(event.ports[0]));
+});
+
+/** Takes over from an earlier version, unless more than one tab shows it, and tells the tab that asked. */
+async function takeOver(tab) {
+  const tabs = await self.clients.matchAll({ type: "window", includeUncontrolled: true });
+  const isAlone = tabs.length === 1;
+  tab.postMessage(isAlone);
+  if (isAlone) await self.skipWaiting();
+}
 
 self.addEventListener("fetch", (event) => {
   const { request } = event;

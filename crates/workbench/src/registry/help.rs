@@ -22,7 +22,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Command::Window(WindowCommand::ShowDialog(Dialog::About))
     }),
     called("help.newVersion", "Announce new version", Group::Help, |_, _| {
-        let text = "A new version is available. Close all Enroute tabs to update.";
+        let text = "A new version is available. Close all other Enroute tabs, then reload this one.";
         Ok(Command::Window(WindowCommand::Notify(ToastKind::Info, text.to_owned())))
     }),
 ];
