@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use serde_json::{Value, json};
+use text_editing::TextCommand;
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, ShelfRequest};
 use workbench::host_io::Remote as _;
@@ -209,7 +210,29 @@ fn a_killed_browser_finds_each_key_and_the_open_mission_on_the_shelf() {
 }
 
 #[test]
-fn what_is_typed_waits_for_the_shelf_a_tenth_of_a_second_at_most() {
+fn what_no_frame_has_taken_in_is_written_ahead_of_it_and_given_up_for_what_the_frame_has() {
+    let typing = |world: &Rc<World>| {
+        let mut app = start_in(Rc::clone(world));
+        edit(&mut app, "one ");
+        wait(&mut app);
+        app.dispatch("edit.select", &json!({ "start": 4 }));
+        app.step();
+        app.session.keep_ahead(&[TextCommand::Insert("tw".to_owned()), TextCommand::Insert("o".to_owned())]);
+        app
+    };
+    // Nothing but the shelf is left of it.
+    let world = Rc::new(World::default());
+    assert_eq!(text_of(&typing(&world)), "one ");
+    assert_eq!(text_of(&start_in(world)), "one two");
+    // The frame finds that the keys went elsewhere.
+    let world = Rc::new(World::default());
+    let mut app = typing(&world);
+    wait(&mut app);
+    assert_eq!(text_of(&start_in(world)), "one ");
+}
+
+#[test]
+fn what_is_typed_waits_for_the_shelf_only_a_moment() {
     let world = Rc::new(World::default());
     let mut app = start_in(Rc::clone(&world));
     edit(&mut app, "a");

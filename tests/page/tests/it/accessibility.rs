@@ -37,6 +37,64 @@ fn focusing_an_element_of_the_document_sends_keys_to_the_widget() -> Result<()> 
     Ok(())
 }
 
+/// Buttons that stay pressed: all others only select something.
+const TOGGLES: [&str; 5] = ["Add obstacle…", "Measure", "Path points", "Place", "Search tree"];
+
+#[test]
+fn what_selects_something_says_whether_it_is_current_and_is_not_pressed() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.widget("textbox", "Mission text")?;
+    for workspace in ["author", "teach", "review", "execute"] {
+        page.tab
+            .evaluate(&format!("enroute.dispatch('view.workspace', {})", json!({ "name": workspace })))?;
+        page.settle()?;
+        let pressed = page.tab.evaluate(
+            "[...document.querySelectorAll('#accessibility [aria-pressed]')].map((it) => it.getAttribute('aria-label'))",
+        )?;
+        let pressed = pressed.as_array().cloned().unwrap_or_default();
+        let others: Vec<&Value> =
+            pressed.iter().filter(|name| !TOGGLES.iter().any(|toggle| *name == toggle)).collect();
+        assert!(others.is_empty(), "{workspace}: {others:?}");
+    }
+    page.tab.evaluate("enroute.dispatch('view.workspace', { name: 'author' })")?;
+    page.tab.evaluate("enroute.dispatch('go.select', { name: 'Group-Wait#1' })")?;
+    page.tab.wait_until("document.querySelectorAll('[role=button][aria-current=true][aria-label*=\"Group-Wait\"]').length > 1")?;
+    Ok(())
+}
+
+/// A browser takes whatever lies within an element with a listener for clickable, and a screen reader says so.
+#[test]
+fn nothing_is_clickable_because_of_what_it_lies_in() -> Result<()> {
+    let page = Opened::planned()?;
+    for parent in ["document.getElementById('accessibility')", "document.body", "document.documentElement"] {
+        let object = page.tab.call("Runtime.evaluate", &json!({ "expression": parent }))?;
+        let listeners = page
+            .tab
+            .call("DOMDebugger.getEventListeners", &json!({ "objectId": object["result"]["objectId"] }))?;
+        let kinds: Vec<&Value> =
+            listeners["listeners"].as_array().into_iter().flatten().map(|it| &it["type"]).collect();
+        assert!(!kinds.iter().any(|kind| **kind == "click" || **kind == "mousedown"), "{parent}: {kinds:?}");
+    }
+    Ok(())
+}
+
+/// A screen reader takes the focus from everything while its user reads.
+#[test]
+fn a_key_is_heard_and_its_outcome_told_while_nothing_has_the_focus() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.click_widget("textbox", "Mission text")?;
+    page.wait_for("state.activePanel === 'editor'")?;
+    page.tab.evaluate("document.activeElement.blur()")?;
+    page.tab.wait_until("document.activeElement === document.body")?;
+    page.tab.press(Key::Function(6), Modifiers::NONE)?;
+    page.wait_for("state.activePanel !== 'editor'")?;
+    page.tab.wait_until(
+        "document.getElementById(document.activeElement.getAttribute('aria-activedescendant'))
+            ?.getAttribute('role') === 'group'",
+    )?;
+    Ok(())
+}
+
 #[test]
 fn everything_that_takes_input_has_a_name() -> Result<()> {
     let page = Opened::planned()?;

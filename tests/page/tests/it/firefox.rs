@@ -1,17 +1,23 @@
 //! The page in Firefox and in WebKit, where they are: it starts, plans, draws, is edited, loaded again, and opens without a
 //! network; in Firefox also with what its users block.
 
-use std::path::Path;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 use serde_json::Value;
 use xtask::{
     browser::{Firefox, WebKit},
     dist,
+    process::find_program,
     server::SiteServer,
 };
 
 use crate::opened::SITE;
+use crate::same::every_example_is_the_same;
 
 /// F6, as `WebDriver` spells it.
 const F6: &str = "\u{e036}";
@@ -125,7 +131,7 @@ fn use_page(browser: &mut dyn Driven, name: &str) -> Result<()> {
     let published = std::env::temp_dir().join(format!("enroute-{name}-{}", std::process::id()));
     dist::pack(&SITE, &published)?;
     let outcome = use_published(browser, &published);
-    std::fs::remove_dir_all(published)?;
+    fs::remove_dir_all(published)?;
     outcome
 }
 
@@ -144,6 +150,10 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     browser.wait_until("enroute.source().startsWith('// once')")?;
     browser.press(F6)?;
     browser.wait_until("enroute.state().activePanel !== 'editor'")?;
+    // A key is heard also after a screen reader has taken the focus from everything.
+    browser.ask("window.panelBefore = enroute.state().activePanel, document.activeElement.blur()")?;
+    browser.press(F6)?;
+    browser.wait_until("enroute.state().activePanel !== panelBefore")?;
     browser.ask("enroute.dispatch('edit.undo')")?;
     browser.wait_until("!enroute.source().startsWith('// once')")?;
     browser.ask("enroute.dispatch('edit.redo')")?;
@@ -184,6 +194,83 @@ fn webkit_starts_plans_takes_keys_and_opens_again_without_a_network() -> Result<
         return Ok(());
     };
     use_page(&mut WebKit::start(&programs)?, "webkit")
+}
+
+#[test]
+fn every_example_leads_to_the_same_plan_paths_and_content_in_firefox_and_webkit() -> Result<()> {
+    let server = SiteServer::start(&SITE, 0, false)?;
+    let mut browsers: Vec<Box<dyn Driven>> = Vec::new();
+    if let Some(firefox) = firefox("")? {
+        browsers.push(Box::new(firefox));
+    }
+    match WebKit::find() {
+        Some(programs) => browsers.push(Box::new(WebKit::start(&programs)?)),
+        None => not_tried("WebKit is not installed (on Debian: apt-get install webkit2gtk-driver xvfb)"),
+    }
+    for browser in &mut browsers {
+        if let Some(reason) = browser.open_page(server.url())? {
+            not_tried(&reason);
+            continue;
+        }
+        every_example_is_the_same(|expression| browser.ask(expression))?;
+    }
+    Ok(())
+}
+
+/// A file among temporary ones, gone when it is dropped.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    fn write(ending: &str, bytes: &[u8]) -> Result<Self> {
+        let path = std::env::temp_dir().join(format!("enroute-printed-{}{ending}", std::process::id()));
+        fs::write(&path, bytes)?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // What is left behind lies among temporary files.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+#[test]
+fn firefox_prints_reports_whose_pages_say_their_number_and_their_content() -> Result<()> {
+    let Some(mut firefox) = firefox("")? else { return Ok(()) };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    if let Some(reason) = firefox.open_page(&format!("{}#mission=enroute", server.url()))? {
+        not_tried(&reason);
+        return Ok(());
+    }
+    Driven::wait_until(&mut firefox, "enroute.state().status === 'plan'")?;
+    let text = firefox.evaluate(
+        "new Promise((done) => {
+            URL.createObjectURL = (blob) => { blob.text().then(done); return 'blob:none'; };
+            enroute.dispatch('file.report');
+        })",
+    )?;
+    let report = Temporary::write(".html", text.as_str().context("a report")?.as_bytes())?;
+    firefox.go_to(&format!("file://{}", report.0.display()))?;
+    let hash = firefox.evaluate("document.querySelector('.hash').textContent")?;
+    let hash = hash.as_str().context("a hash")?.to_owned();
+    let printed = firefox.print()?;
+    let Some(reader) = find_program(&["pdftotext"]) else {
+        not_tried("there is no pdftotext (on Debian: apt-get install poppler-utils)");
+        return Ok(());
+    };
+    let printed = Temporary::write(".pdf", &printed)?;
+    let text = Command::new(reader).arg("-layout").arg(&printed.0).arg("-").output()?.stdout;
+    let text = String::from_utf8_lossy(&text);
+    let pages: Vec<&str> = text.trim_end_matches('\u{c}').split('\u{c}').collect();
+    assert!(pages.len() >= 3, "{} pages", pages.len());
+    for (page, number) in pages.iter().zip(1..) {
+        assert!(page.contains(&format!("Content {hash}")), "page {number} does not say its content: {page}");
+        // The last one says that the report ends there.
+        let says = page.contains(&format!("Page {number}")) || number == pages.len();
+        assert!(says, "page {number} does not say its number: {page}");
+    }
+    Ok(())
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use serde_json::json;
+use xtask::browser::{Key, Modifiers};
 use xtask::kill::{Pace, Victim};
 
 use crate::opened::{BROWSER, Opened, SITE};
@@ -113,6 +114,45 @@ fn damaged_settings_and_layouts_do_not_keep_the_page_from_starting() -> Result<(
         let text = page.tab.widget("textbox", "Mission text")?;
         assert!(text.width > 100.0 && text.height > 100.0, "{damage}: {text:?}");
     }
+    Ok(())
+}
+
+/// Whether the texts that the database holds for the next start contain these words.
+fn is_on_disk(words: &str) -> String {
+    format!(
+        "new Promise((resolve) => {{
+            indexedDB.open('enroute', 1).onsuccess = ({{ target: {{ result: database }} }}) => {{
+                const range = IDBKeyRange.bound('typed/', 'typed0');
+                const all = database.transaction('shelf').objectStore('shelf').getAll(range);
+                all.onsuccess = () => {{
+                    database.close();
+                    resolve(all.result.some((bytes) => new TextDecoder().decode(bytes).includes({})));
+                }};
+            }};
+        }})",
+        json!(words)
+    )
+}
+
+#[test]
+fn keys_are_on_the_disk_before_a_late_frame_takes_them_in() -> Result<()> {
+    let page = Opened::with_fragment("")?;
+    page.tab.evaluate("enroute.setSource('// one ')")?;
+    page.wait_for("state.library.keeping === 'kept'")?;
+    page.place_caret_after("// one ")?;
+    page.settle()?;
+    page.tab.evaluate(
+        "window.frames_ = []; window.draw = requestAnimationFrame.bind(window);
+         window.requestAnimationFrame = (frame) => window.frames_.push(frame)",
+    )?;
+    // The frame that was asked for before asks for the next one, which waits.
+    page.tab.wait_until("frames_.length > 0")?;
+    page.tab.type_text("twoo")?;
+    page.tab.press(Key::Backspace, Modifiers::NONE)?;
+    page.tab.wait_until(&is_on_disk("// one two\""))?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, "// one ", "no frame has taken it in");
+    page.tab.evaluate("window.requestAnimationFrame = draw; frames_.forEach((frame) => draw(frame)); 0")?;
+    page.tab.wait_until("enroute.source() === '// one two'")?;
     Ok(())
 }
 
