@@ -87,7 +87,10 @@ impl<'file> Writer<'file> {
                 Some(Meaning::Part(part, given)) => {
                     let _ = writeln!(text, "(PART {} {})", name(field.name), name(part.name));
                     for (argument, given) in part.arguments.iter().zip(given) {
-                        let own = given.word().filter(|word| self.values(class, word).len() > 1);
+                        let own = given.word().filter(|word| {
+                            let values = self.values(class, word);
+                            values.len() > 1 && values == self.values(part, argument)
+                        });
                         if let Some(own) = own {
                             connections.push(format!(
                                 "({}.{} = {})",
