@@ -24,7 +24,10 @@ pub(super) fn constant(tree: &Tree) -> Option<String> {
     }
 }
 
-/// A number, or a calculation with numbers, as a mission has it.
+/// Numbers of a mission have at most so many characters.
+const MAX_DIGITS: usize = 14;
+
+/// A number from 0 on, or a calculation with numbers, as a mission has it.
 pub(super) fn number(tree: &Tree) -> Option<String> {
     match tree.headed() {
         Some((sign @ ("+" | "-" | "*" | "/"), parts)) => {
@@ -32,7 +35,8 @@ pub(super) fn number(tree: &Tree) -> Option<String> {
             (!parts.is_empty()).then(|| format!("({})", parts.join(sign)))
         }
         Some(("lvar", _)) | None => {
-            tree.word().filter(|word| word.parse::<Rational>().is_ok()).map(str::to_owned)
+            let is_number = |word: &&str| word.parse().is_ok_and(|number: Rational| number >= Rational::ZERO);
+            tree.word().filter(is_number).filter(|word| word.len() <= MAX_DIGITS).map(str::to_owned)
         }
         Some(_) => None,
     }
