@@ -61,6 +61,8 @@ each! {
     ptpn "ptpn",
     uncertain_networks "uncertain-networks",
     plans "plans",
+    jmpl "jmpl",
+    pamela "pamela",
     observations "observations",
     disturbances "disturbances",
     uncertainty "uncertainty",

@@ -7,6 +7,7 @@ mod exports;
 mod links;
 mod maps;
 mod missions;
+mod models;
 mod networks;
 mod page;
 
@@ -49,6 +50,8 @@ pub const READERS: &[Reader] = &[
     networks::PTPN,
     networks::UNCERTAIN,
     networks::PLANS,
+    models::JMPL,
+    models::PAMELA,
     documents::OBSERVATIONS,
     documents::DISTURBANCES,
     documents::UNCERTAINTY,
