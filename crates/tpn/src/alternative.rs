@@ -4,14 +4,16 @@ use smol_str::SmolStr;
 
 use crate::network::{ArcId, DecisionId, Network, NodeId, Occurrence, OccurrenceKind};
 
-/// The longest call that represents an alternative; longer ones are named by their occurrence.
+/// The longest call that represents an alternative, in characters; of longer ones, the first and the last argument are told.
 const LONGEST_CALL: usize = 40;
+/// The fewest characters of an argument that is cut.
+const LEAST_OF_ARGUMENT: usize = 6;
 /// So many parts of an alternative are named.
 const MAX_NAMED: usize = 2;
 
 impl Network {
-    /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path#1` where the call is
-    /// long, or `Dig#1, Analyze#1 and 2 more`. `nothing` where it does nothing.
+    /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path(A, …, TAI_POS)` where
+    /// the call is long, or `Dig#1, Analyze#1 and 2 more`. `nothing` where it does nothing.
     ///
     /// Takes time linear in the network for each alternative of the decision.
     pub fn alternative_name(&self, decision: DecisionId, alternative: u32) -> String {
@@ -87,12 +89,44 @@ fn call(occurrence: &Occurrence) -> String {
         return occurrence.name.to_string();
     }
     let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
-    let call = format!("{}({})", occurrence.activity, arguments.join(", "));
-    if call.chars().count() <= LONGEST_CALL { call } else { occurrence.name.to_string() }
+    shortened(&occurrence.activity, &arguments)
+}
+
+/// A call, shortened where it is long: by the arguments between the first and the last one, then by the ends of both.
+fn shortened(activity: &str, arguments: &[&str]) -> String {
+    let call = |arguments: &[&str]| format!("{activity}({})", arguments.join(", "));
+    let fits = |call: &String| call.chars().count() <= LONGEST_CALL;
+    let whole = call(arguments);
+    if fits(&whole) {
+        return whole;
+    }
+    let ends: Vec<&str> = match arguments {
+        [first, last] => vec![first, last],
+        [first, .., last] => vec![first, "…", last],
+        _ => arguments.to_vec(),
+    };
+    let told = call(&ends);
+    if fits(&told) {
+        return told;
+    }
+    let named = ends.iter().filter(|&&it| it != "…").count().max(1);
+    let around = told.chars().count() - ends.iter().map(|it| it.chars().count()).sum::<usize>();
+    let each = (LONGEST_CALL.saturating_sub(around + ends.len() - named) / named).max(LEAST_OF_ARGUMENT);
+    let cut: Vec<String> = ends.iter().map(|argument| cut(argument, each)).collect();
+    call(&cut.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// The beginning of a text that has more than so many characters.
+fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    text.chars().take(most.saturating_sub(1)).chain(['…']).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::shortened;
     use crate::{DecisionId, Top, compile};
 
     fn names(alternatives: &str) -> Vec<String> {
@@ -118,7 +152,16 @@ mod tests {
         );
         assert_eq!(
             names("Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-READS)[1,2], delay[1,2]"),
-            ["Dig#1", "delay#1"]
+            ["Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-RE…)", "delay#1"]
         );
+    }
+
+    #[test]
+    fn a_long_call_tells_its_first_and_its_last_argument() {
+        let places = ["PATH1_1", "PATH1_2", "PATH1_3", "TAI_POS"];
+        assert_eq!(shortened("Group-Traverse-Path", &places), "Group-Traverse-Path(PATH1_1, …, TAI_POS)");
+        assert_eq!(shortened("Visit", &["A", "B"]), "Visit(A, B)");
+        let long = ["SOUTHERN-OUTCROP-OF-THE-CRATER", "B", "NORTHERN-OUTCROP-OF-THE-CRATER"];
+        assert_eq!(shortened("Traverse", &long), "Traverse(SOUTHERN-OU…, …, NORTHERN-OU…)");
     }
 }
