@@ -248,7 +248,7 @@ fn a_long_mission_is_boxes_that_open_and_the_overview_folds_them_again() {
     app.settle();
     app.settle();
     assert_ne!(folded(&app), boxes, "the box is open");
-    app.harness.get_by_role_and_label(egui::Role::Button, "Overview").click();
+    app.harness.get_by_role_and_label(egui::Role::Button, "Fit detail").click();
     app.settle();
     app.settle();
     assert_eq!(folded(&app), boxes);

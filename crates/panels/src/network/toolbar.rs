@@ -69,7 +69,7 @@ pub(super) fn show(
         }
         let buttons = [
             (has_boxes, "Expand all", "Show all details", Asked::OpenAll),
-            (is_changed, "Overview", "Fit as much detail as is readable", Asked::FitAll),
+            (is_changed, "Fit detail", "Show as much detail as is readable", Asked::FitAll),
             (!has_boxes, "Collapse all", "Collapse top-level activities", Asked::CloseAll),
         ];
         for (is_offered, name, help, answer) in buttons {
