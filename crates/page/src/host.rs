@@ -4,9 +4,9 @@ use js_sys::Uint8Array;
 use link::Request;
 use wasm_bindgen::prelude::*;
 use web_sys::{Location, MediaQueryList, Storage, Window};
+use workbench::area::Area;
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 use workbench::limits::{MAX_FILE_BYTES, too_large};
-use workbench::state::terrain::Area;
 
 use crate::{
     core_link::CoreLink,

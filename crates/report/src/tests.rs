@@ -424,8 +424,7 @@ fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs(
     record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada <A>"));
     assert!(page_with(&before, &record).contains("approved</span>: Reviewer 1 of 1"));
     let page = page_with(&after, &record);
-    let lapsed =
-        "approval lapsed</span>: Reviewer 0 of 1; Ada &lt;A&gt; approved 2026-01-02 03:04 UTC: text, map";
+    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada &lt;A&gt; approved 2026-01-02 03:04 UTC: the text, map, goal or seed has changed";
     assert!(page.contains(lapsed), "{page}");
     assert!(page.contains("<del>− primitive A()[1,2]; scenario S[0,9] = { A() }</del>"));
     assert!(page.contains("<ins>+ primitive A()[3,4]; scenario S[0,9] = { A() }</ins>"));

@@ -35,7 +35,6 @@ pub struct Input<'a> {
     pub ground: &'a Ground,
     /// What a tool has.
     pub sketch: &'a Sketch,
-    /// The light.
     pub sun: Sun,
     /// What is left out where frames are slow.
     pub savings: Savings,

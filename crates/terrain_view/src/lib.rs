@@ -13,6 +13,7 @@ pub mod frame;
 pub mod gpu;
 pub mod ground;
 pub mod navigate;
+mod outline;
 pub mod pace;
 pub mod pick;
 mod rocks;

@@ -8,6 +8,7 @@ use workbench::state::{AppState, Selection};
 
 use crate::camera::Camera;
 use crate::ground::Ground;
+use crate::outline::is_inside;
 use crate::scene;
 
 /// What picking looks at.
@@ -217,15 +218,6 @@ pub fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
             is_inside(&corners, point)
         }
     }
-}
-
-/// Whether a place is inside an outline.
-pub fn is_inside(corners: &[Vec2], point: Vec2) -> bool {
-    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-    let crossings = sides.filter(|(a, b)| {
-        (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossings.count() % 2 == 1
 }
 
 /// Which part of the way from `from` to `to` is nearest to `point`, from 0 to 1.

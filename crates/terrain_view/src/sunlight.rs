@@ -7,7 +7,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::ground::Ground;
-use crate::pick;
+use crate::outline::is_inside;
 use crate::volume::Volume;
 
 /// How high the ground is, with what stands on it, in pixels that cover all of it, rows from the south.
@@ -60,7 +60,7 @@ impl Relief {
             for row in first.y as u32..last.y.max(0.0) as u32 {
                 for column in first.x as u32..last.x.max(0.0) as u32 {
                     let at = place(column, row);
-                    if pick::is_inside(&volume.outline_m, at)
+                    if is_inside(&volume.outline_m, at)
                         && let Some(height_m) = heights_m.get_mut((row * width + column) as usize)
                     {
                         *height_m = height_m.max(ground.height_at(at) + volume.height_m);

@@ -5,7 +5,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::ground::Ground;
-use crate::pick::is_inside;
+use crate::outline::is_inside;
 use crate::shapes::Shapes;
 
 /// A prism that stands on the ground.

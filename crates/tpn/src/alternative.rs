@@ -7,7 +7,7 @@ use crate::network::{ArcId, DecisionId, Network, NodeId, Occurrence, OccurrenceK
 /// The longest call that represents an alternative, in characters; of longer ones, the first and the last argument are told.
 const LONGEST_CALL: usize = 40;
 /// The fewest characters of an argument that is cut.
-const LEAST_OF_ARGUMENT: usize = 6;
+const MIN_ARGUMENT: usize = 6;
 /// So many parts of an alternative are named.
 const MAX_NAMED: usize = 2;
 
@@ -42,7 +42,7 @@ impl Network {
         };
         match parts.as_slice() {
             [] => "nothing".to_owned(),
-            [single] => call(single),
+            [single] => self.call(single),
             several => {
                 let names: Vec<&str> = several.iter().take(MAX_NAMED).map(|it| it.name.as_str()).collect();
                 match several.len().saturating_sub(MAX_NAMED) {
@@ -51,6 +51,25 @@ impl Network {
                 }
             }
         }
+    }
+
+    /// The call of an activity; its name where another call, shortened, reads the same.
+    fn call(&self, occurrence: &Occurrence) -> String {
+        let told = |occurrence: &Occurrence| {
+            let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
+            shortened(&occurrence.activity, &arguments)
+        };
+        let text = told(occurrence);
+        let is_alike = |other: &Occurrence| {
+            other.activity == occurrence.activity
+                && other.arguments != occurrence.arguments
+                && told(other) == text
+        };
+        if occurrence.arguments.is_empty() || (text.contains('…') && self.occurrences.iter().any(is_alike))
+        {
+            return occurrence.name.to_string();
+        }
+        text
     }
 
     /// By node, whether an alternative of a decision leads to it and no other one does; of a decision with one alternative,
@@ -84,21 +103,13 @@ impl Network {
     }
 }
 
-fn call(occurrence: &Occurrence) -> String {
-    if occurrence.arguments.is_empty() {
-        return occurrence.name.to_string();
-    }
-    let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
-    shortened(&occurrence.activity, &arguments)
-}
-
 /// A call, shortened where it is long: by the arguments between the first and the last one, then by the ends of both.
 fn shortened(activity: &str, arguments: &[&str]) -> String {
     let call = |arguments: &[&str]| format!("{activity}({})", arguments.join(", "));
     let fits = |call: &String| call.chars().count() <= LONGEST_CALL;
-    let whole = call(arguments);
-    if fits(&whole) {
-        return whole;
+    let complete = call(arguments);
+    if fits(&complete) {
+        return complete;
     }
     let ends: Vec<&str> = match arguments {
         [first, last] => vec![first, last],
@@ -111,7 +122,7 @@ fn shortened(activity: &str, arguments: &[&str]) -> String {
     }
     let named = ends.iter().filter(|&&it| it != "…").count().max(1);
     let around = told.chars().count() - ends.iter().map(|it| it.chars().count()).sum::<usize>();
-    let each = (LONGEST_CALL.saturating_sub(around + ends.len() - named) / named).max(LEAST_OF_ARGUMENT);
+    let each = (LONGEST_CALL.saturating_sub(around + ends.len() - named) / named).max(MIN_ARGUMENT);
     let cut: Vec<String> = ends.iter().map(|argument| cut(argument, each)).collect();
     call(&cut.iter().map(String::as_str).collect::<Vec<_>>())
 }
@@ -154,6 +165,8 @@ mod tests {
             names("Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-READS)[1,2], delay[1,2]"),
             ["Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-RE…)", "delay#1"]
         );
+        let alike = "Dig(FIRST-OUTCROP, EAST, LAST-OUTCROP-OF-ALL)[1,2], Dig(FIRST-OUTCROP, WEST, LAST-OUTCROP-OF-ALL)[1,2]";
+        assert_eq!(names(alike), ["Dig#1", "Dig#2"]);
     }
 
     #[test]

@@ -4,10 +4,10 @@ use link::Request;
 use review::Record;
 use smol_str::SmolStr;
 
+use crate::area::Area;
 use crate::host::{FileKind, Save};
 use crate::library::MissionId;
 use crate::state::keys::KeyChange;
-use crate::state::terrain::Area;
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]

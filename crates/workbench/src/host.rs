@@ -7,8 +7,8 @@ use link::{Request, Response};
 #[cfg(test)]
 use ts_rs::TS;
 
+use crate::area::Area;
 use crate::limits::{MAX_FILE_BYTES, MAX_TEXT_BYTES};
-use crate::state::terrain::Area;
 
 /// What the app needs from where it runs.
 ///

@@ -5,6 +5,7 @@
 //! and the app around them read it.
 
 pub mod acts;
+pub mod area;
 pub mod command;
 pub mod description;
 mod dialog;

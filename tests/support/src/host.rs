@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use link::{Request, Response};
 use mission::{Core, CoreHost};
+use workbench::area::Area;
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
-use workbench::state::terrain::Area;
 
 /// How the shelf of a world does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

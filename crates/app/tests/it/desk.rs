@@ -92,10 +92,13 @@ fn choices_are_told_by_what_they_do() {
     let mut app = sized([1440.0, 1400.0]);
     dispatch(&mut app, "view.panel", &json!("plan"));
     app.settle();
-    let taken = app.harness.query_all_by_label_contains("Group-Traverse-Path#1").count();
-    let others = app.harness.query_all_by_label_contains("instead of Group-Traverse-Path#2").count();
+    let taken = app.harness.query_all_by_label_contains("Group-Traverse-Path(PATH1_1, …, TAI_POS)").count();
+    let others = app
+        .harness
+        .query_all_by_label_contains("instead of Group-Traverse-Path(PATH2_1, …, TAI_POS)")
+        .count();
     assert!(taken > 0 && others == 1, "{taken} {others}");
-    assert!(app.harness.query_by_label("0: Group-Traverse-Path#1").is_none());
+    assert!(app.harness.query_by_label("0: Group-Traverse-Path(PATH1_1, …, TAI_POS)").is_none());
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn why_the_other_path_was_not_taken_is_said() {
     let app = reviewing();
     let found = app.harness.query_all_by_role(Role::Button).any(|node| {
         node.accesskit_node().label().is_some_and(|label| {
-            label.starts_with("Group-Traverse-Path#2: ")
+            label.starts_with("Group-Traverse-Path(PATH2_1, …, TAI_POS): ")
                 && label.contains("Impossible")
                 && label.contains("PATH2")
         })

@@ -78,7 +78,8 @@ fn model_of(name: &str, text: &str, (interface, initial): (&str, &str)) -> Strin
 
 /// What is estimated after a step of a run with these observations.
 fn estimate(model: &str, program: &str, step: usize, observed: &[&str]) -> Value {
-    let program = file("models-program.rmpl", program);
+    // Tests run at the same time, each with a model of its own.
+    let program = file(&format!("{}-program.rmpl", model.rsplit('/').next().unwrap_or(model)), program);
     let mut arguments = vec!["run", &program, "--model", model, "--format", "json"];
     arguments.extend(observed.iter().flat_map(|observed| ["--observe", observed]));
     let run = answer(&enroute(&arguments));

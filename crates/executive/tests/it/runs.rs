@@ -156,7 +156,7 @@ fn a_window_withdrawn_while_the_rovers_wait_sends_them_the_other_way() {
         Happening::Replanned { changes } => Some((entry.time, changes.clone())),
         _ => None,
     });
-    let change = "D1 takes Group-Traverse-Path#2 instead of Group-Traverse-Path#1";
+    let change = "D1 takes Group-Traverse-Path(PATH2_1, …, TAI_POS) instead of Group-Traverse-Path(PATH1_1, …, TAI_POS)";
     assert_eq!(changes, Some((Time::from(30), vec![change.to_owned()])));
 }
 

@@ -14,7 +14,6 @@ pub(super) struct Symbol {
     pub(super) is_mode: bool,
 }
 
-/// A constraint.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Formula<'file> {
     Constant(bool),

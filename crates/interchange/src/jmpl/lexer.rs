@@ -2,7 +2,6 @@
 
 use super::error::JmplError;
 
-/// A token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Token {
     Word(String),

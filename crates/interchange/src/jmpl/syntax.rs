@@ -7,7 +7,6 @@ pub(super) struct Place {
     pub(super) line: u32,
 }
 
-/// A file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct File {
     pub(super) enums: Vec<Enum>,
@@ -92,7 +91,6 @@ pub(super) type Case = (Vec<String>, Vec<Statement>);
 /// Names joined by points.
 pub(super) type Path = Vec<String>;
 
-/// A condition.
 #[derive(Clone, Debug)]
 pub(super) enum Expression {
     Any(Vec<Self>),

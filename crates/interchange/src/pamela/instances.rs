@@ -26,7 +26,6 @@ pub(super) enum Reference<'file> {
     Value(Option<&'file Tree>),
 }
 
-/// All objects.
 pub(super) struct Instances<'file> {
     pub(super) classes: &'file [Class<'file>],
     pub(super) all: Vec<Instance<'file>>,

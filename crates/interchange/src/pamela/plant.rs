@@ -283,7 +283,7 @@ impl<'file> Writer<'file> {
         right: &'file Tree,
     ) -> Result<String, String> {
         let path = left.word().filter(|_| constant(left).is_none());
-        let path = path.ok_or("an equality that begins with a constant")?;
+        let path = path.ok_or("an equality that starts with a constant")?;
         let (own, values) = match path.split_once('.') {
             None => match self.meaning(class, path) {
                 Some(Meaning::Argument(argument)) => (name(argument), self.values(class, argument)),

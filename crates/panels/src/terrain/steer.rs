@@ -64,7 +64,7 @@ impl TerrainPanel {
     }
 
     fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
-        let (Some(camera), Some(whole)) = (self.camera, self.whole(aspect)) else { return };
+        let (Some(camera), Some(map_view)) = (self.camera, self.map_view(aspect)) else { return };
         match action {
             ViewAction::ZoomIn | ViewAction::ZoomOut => {
                 let mut nearer = camera;
@@ -73,7 +73,7 @@ impl TerrainPanel {
             }
             ViewAction::ZoomReset | ViewAction::Fit => {
                 self.mount = Mount::Free;
-                self.fly(camera, whole, context);
+                self.fly(camera, map_view, context);
             }
             ViewAction::TopView => self.fly(camera, camera.top_view(), context),
             ViewAction::FitSelection => {
@@ -98,7 +98,7 @@ impl TerrainPanel {
     }
 
     /// The view of the whole map.
-    fn whole(&self, aspect: f32) -> Option<Camera> {
+    fn map_view(&self, aspect: f32) -> Option<Camera> {
         self.ground.as_ref().map(|shown| Camera::fitting(&shown.ground, aspect))
     }
 
@@ -123,8 +123,8 @@ impl TerrainPanel {
         let playback = &context.state.playback;
         let shot = tour::shot(&snapshot.motions, playback.time, playback.end);
         self.mount = Mount::Tour(shot);
-        match (shot, self.camera, self.whole(aspect)) {
-            (Shot::Map, Some(camera), Some(whole)) => self.fly(camera, whole, context),
+        match (shot, self.camera, self.map_view(aspect)) {
+            (Shot::Map, Some(camera), Some(map_view)) => self.fly(camera, map_view, context),
             (Shot::Vehicle(_), ..) => self.fly_to_followed(context, snapshot),
             _ => {}
         }

@@ -96,7 +96,7 @@ fn sun_menu(ui: &mut Ui, context: &Context<'_>, sun: &mut SunView, commands: &mu
     ui.set_max_width(250.0);
     let goes_by_clock = sun.follows_clock && context.state.time_of_day_secs().is_some();
     ui.checkbox(&mut sun.follows_clock, "Follow mission clock")
-        .on_hover_text("The start date gives the time of day; north is up, noon is south");
+        .on_hover_text("Take the time of day from the start date");
     let mut epoch = context.state.settings.epoch.clone();
     ui.horizontal(|ui| {
         let label = ui.label("Start date");

@@ -373,8 +373,9 @@ pub struct SunView {
     pub height_deg: f32,
 }
 
-/// The directions and heights that the sun can be set to, in degrees.
+/// The least and the greatest direction that the sun can be set to, clockwise from north in degrees.
 pub const SUN_AZIMUTHS_DEG: [f32; 2] = [0.0, 360.0];
+/// The least and the greatest height of the sun over the horizon, in degrees.
 pub const SUN_HEIGHTS_DEG: [f32; 2] = [5.0, 90.0];
 
 impl Default for SunView {
@@ -393,7 +394,7 @@ pub enum Effects {
     Automatic,
     /// All of it, however slow.
     Full,
-    /// Little of it.
+    /// No grain of the ground, no shadows of rocks, and fewer pixels.
     Reduced,
 }
 

@@ -5,6 +5,7 @@ use rmpl::Span;
 use smol_str::SmolStr;
 use text_editing::{Caret, EditKind};
 
+use crate::area::Area;
 use crate::effect::Effect;
 use crate::panel_effect::ViewAction;
 use crate::panel_kind::PanelKind;
@@ -75,9 +76,6 @@ pub enum Film {
     /// What is drawn in this part of the window is recorded.
     Rolling(Area),
 }
-
-/// A part of the window: left, top, width and height, from 0 to 1.
-pub type Area = [f32; 4];
 
 /// What can be asked of the terrain.
 #[derive(Clone, Debug, PartialEq)]

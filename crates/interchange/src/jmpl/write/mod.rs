@@ -347,7 +347,7 @@ impl<'file> Writer<'file> {
         if is_command {
             self.lines.insert(&domain.name, domain);
             self.evaluator.remark(format!(
-                "constraints speak of the command `{}` of `{}`: it arrives one step after it is given",
+                "constraints mention the command `{}` of `{}`: it arrives one step after it is given",
                 attribute.name, class.name
             ));
             return format!("(PART {own} {}{LINE})\n", name(&domain.name));

@@ -57,7 +57,7 @@ impl<'file> Writer<'file> {
             };
         }
         let path = left.word().filter(|path| number(left).is_none() && !matches!(*path, "true" | "false"));
-        let path = path.ok_or("an equality that begins with a constant")?;
+        let path = path.ok_or("an equality that starts with a constant")?;
         if let Some(Reference::Instance(object)) = self.instances.resolve(place.instance, path)
             && let Some(mode) = mode_of(right)
         {
