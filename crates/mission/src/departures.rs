@@ -11,10 +11,11 @@ use exact::{Rational, Time};
 use nalgebra::{Point2, distance};
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
+use snapshot::vehicle;
 use tpn::worth::rounded_up;
 use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId, ValueSet, VariableId};
 
-use crate::ground::{Grounds, StandingGround};
+use crate::ground::{EndGround, Grounds, StandingGround};
 use crate::planning::{self, Problem};
 use crate::spots::PossibleSpots;
 use crate::traverse::{self, Route, Waypoint};
@@ -49,8 +50,8 @@ struct Movement {
     arrival: LabelId,
     /// Through the places that the call names; it starts wherever its leader is.
     route: Route,
-    /// Where its vehicles can stand, if they may stand beside a location.
-    ground: Option<StandingGround>,
+    /// Where there is room at its ends, if its vehicles may stand beside a location.
+    ground: Option<EndGround>,
     places: Vec<Place>,
 }
 
@@ -88,8 +89,10 @@ impl<'mission> Departures<'mission> {
         let (movements, known) = (Vec::new(), BTreeMap::new());
         let mut departures = Self { problem: *problem, index, spots, movements, known };
         let (arrivals, given) = (arrivals(problem.network), given_values(problem.network));
+        // Of those that drive, and of those that fly.
+        let mut standing: BTreeMap<bool, StandingGround> = BTreeMap::new();
         for (&occurrence, labels) in &arrivals {
-            let movement = departures.movement(occurrence, labels, &given, grounds);
+            let movement = departures.movement(occurrence, labels, &given, (grounds, &mut standing));
             departures.movements.extend(movement);
         }
         departures
@@ -268,7 +271,7 @@ impl<'mission> Departures<'mission> {
         occurrence: OccurrenceId,
         labels: &[LabelId],
         given: &BTreeMap<VariableId, BTreeSet<ValueId>>,
-        grounds: &mut Grounds,
+        (grounds, standing): (&mut Grounds, &mut BTreeMap<bool, StandingGround>),
     ) -> Option<Movement> {
         let network = self.problem.network;
         let moving = self.index.moving(&network.occurrences[occurrence.index()])?;
@@ -286,8 +289,12 @@ impl<'mission> Departures<'mission> {
             let from = self.before(&movement, &middle);
             let is_beside = from.iter().chain(&to).any(|place| place.slot > 0);
             if let Some(ground) = self.problem.ground.filter(|_| is_beside && movement.ground.is_none()) {
-                movement.ground =
-                    Some(grounds.standing(ground, &self.problem.program.world, movement.route.vehicles[0]));
+                let world = &self.problem.program.world;
+                let flies = vehicle::flies(world, movement.route.vehicles[0] as u32);
+                let standing =
+                    standing.entry(flies).or_insert_with(|| grounds.standing(ground, world, flies)).clone();
+                let space = planning::space(&self.problem, ground, grounds, &movement.route).exact;
+                movement.ground = Some(EndGround { standing, space });
             }
             let straights = pairs(&movement, &from, &to).map(|ends| self.straight(&movement, &ends));
             let place = Place {
@@ -385,7 +392,10 @@ fn pairs<'places>(
     to: &'places [Waypoint],
 ) -> impl Iterator<Item = Ends<'places>> {
     let free_m = |places: &[Waypoint]| -> Vec<Point2<f64>> {
-        places.iter().map(|place| planning::free_m(place, movement.ground.as_ref())).collect()
+        let free_m = |place: &Waypoint| {
+            movement.ground.as_ref().map_or(place.position_m, |ground| ground.free_m(place))
+        };
+        places.iter().map(free_m).collect()
     };
     let (from_m, to_m) = (free_m(from), free_m(to));
     from.iter().zip(from_m).flat_map(move |(from, from_m)| {

@@ -14,6 +14,8 @@ use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
 
 use crate::simulation::nearest_free;
+use crate::spots::ON_THE_WAY;
+use crate::traverse::Waypoint;
 
 /// How many free spaces are kept. Vehicle models have one each, and one more for each set of areas that are closed to them.
 const MAX_SPACES: usize = 8;
@@ -37,13 +39,28 @@ pub struct FreeSpace {
     pub roomy: Vec<Arc<ConfigurationSpace>>,
 }
 
-/// Where all vehicles that fly, or all that drive, can stand beside a location: the spaces of their models.
+/// Where all vehicles that drive, or all that fly, can stand beside a location: in the spaces of their models.
+#[derive(Clone)]
 pub(crate) struct StandingGround(Vec<Arc<ConfigurationSpace>>);
 
-impl StandingGround {
-    /// The nearest place where they all can stand; the place itself if there is none near.
-    pub(crate) fn nearest_free(&self, place_m: Point2<f64>) -> Point2<f64> {
-        nearest_free(|place_m| self.0.iter().all(|space| space.is_free(place_m)), place_m).unwrap_or(place_m)
+/// Where there is room for the vehicles of a route at its ends.
+pub(crate) struct EndGround {
+    pub(crate) standing: StandingGround,
+    /// Where the route can be.
+    pub(crate) space: Arc<ConfigurationSpace>,
+}
+
+impl EndGround {
+    /// The place itself, or the nearest one with room if it is beside its location: the same for a drive that leads there and
+    /// for the next one from there. A vehicle that has stopped on its way needs room for this route only.
+    pub(crate) fn free_m(&self, place: &Waypoint) -> Point2<f64> {
+        let place_m = place.position_m;
+        let free_m = match place.slot {
+            0 => None,
+            ON_THE_WAY => nearest_free(|place_m| self.space.is_free(place_m), place_m),
+            _ => nearest_free(|place_m| self.standing.0.iter().all(|space| space.is_free(place_m)), place_m),
+        };
+        free_m.unwrap_or(place_m)
     }
 }
 
@@ -136,14 +153,13 @@ impl Grounds {
         space
     }
 
-    /// Where every vehicle can stand that flies or drives, as this one does, whatever moves it there and away again.
+    /// Where every vehicle can stand that flies, or that drives, whatever moves it there and away again.
     pub(crate) fn standing(
         &mut self,
         (key, map): (&MapKey, &Arc<Terrain>),
         world: &World,
-        vehicle: usize,
+        flies: bool,
     ) -> StandingGround {
-        let flies = vehicle::flies(world, vehicle as u32);
         let closed = world.obstacles.iter().filter(|obstacle| !(flies && obstacle.is_solid()));
         let closed: Vec<ObstacleShape> = closed.map(|obstacle| obstacle.shape.clone()).collect();
         let all = (0..world.vehicles.len()).filter(|&it| vehicle::flies(world, it as u32) == flies);

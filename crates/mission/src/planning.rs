@@ -14,7 +14,6 @@ use executive::Facts;
 use executive::facts::StandingPlace;
 use kirk::{Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
-use nalgebra::Point2;
 use rmpl::Diagnostic;
 use rmpl::program::{self, Change, Measure, Program, World};
 use snapshot::blocked::name_blocked;
@@ -30,13 +29,11 @@ use tpn::{ArcKind, Choice, Departure, Distance, Goal, LevelCondition, Network, O
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
-use crate::ground::{FreeSpace, Grounds, StandingGround};
+use crate::ground::{EndGround, FreeSpace, Grounds};
 use crate::listing::{self, Listed};
 use crate::meetings::{self, KeepOuts, best_plan};
 use crate::programs::{self, Programs};
 use crate::separation::{self, Meeting};
-use crate::simulation::nearest_free;
-use crate::spots::ON_THE_WAY;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
 /// What to plan and how.
@@ -735,8 +732,14 @@ fn found_legs(
 ) -> Result<Vec<Leg>, Undrivable> {
     let space = space(problem, ground, grounds, route);
     let map = ground.1;
-    let standing = grounds.standing(ground, &problem.program.world, route.vehicles[0]);
-    let route = &on_free_ground(route, &standing, &space.exact);
+    let world = &problem.program.world;
+    let standing = grounds.standing(ground, world, vehicle::flies(world, route.vehicles[0] as u32));
+    let ends = EndGround { standing, space: Arc::clone(&space.exact) };
+    let mut route = route.clone();
+    for place in &mut route.waypoints {
+        place.position_m = ends.free_m(place);
+    }
+    let route = &route;
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
     if legs.as_ref().is_ok_and(does_not_fit) {
@@ -755,26 +758,6 @@ pub(crate) fn space(
     let keep_outs = problem.keep_outs.and_then(|keep_outs| keep_outs.get(&route.occurrence));
     let obstacles = route.obstacles.iter().chain(keep_outs.into_iter().flatten()).cloned().collect();
     grounds.space(key, map, &route.model, obstacles)
-}
-
-/// A route whose ends are free where they are not the locations themselves but places beside them: the same for a drive that
-/// leads there and for the next one from there. Where a vehicle has stopped on its way, `space` has room for this drive.
-fn on_free_ground(route: &Route, standing: &StandingGround, space: &ConfigurationSpace) -> Route {
-    let mut route = route.clone();
-    for place in &mut route.waypoints {
-        place.position_m = match place.slot {
-            ON_THE_WAY => {
-                nearest_free(|place_m| space.is_free(place_m), place.position_m).unwrap_or(place.position_m)
-            }
-            _ => free_m(place, Some(standing)),
-        };
-    }
-    route
-}
-
-/// The place itself, or the nearest free one if it is beside its location.
-pub(crate) fn free_m(place: &Waypoint, ground: Option<&StandingGround>) -> Point2<f64> {
-    ground.filter(|_| place.slot > 0).map_or(place.position_m, |ground| ground.nearest_free(place.position_m))
 }
 
 /// The legs of a route that can be driven within its bounds.
