@@ -13,5 +13,7 @@ pub mod plandev;
 pub mod ptpn;
 pub mod rmpl_text;
 mod source;
+mod translation;
 
 pub use source::{ReadError, Source, is_network_file, is_network_text, is_plandev_text};
+pub use translation::Translation;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use interchange::jmpl::{self, SourceFile};
-use interchange::pamela;
+use interchange::{Translation, pamela};
 use serde_json::json;
 use snapshot::{Goal, Problem};
 
@@ -17,17 +17,10 @@ use crate::output::{Format, WRONG, YES, any_error, document, exit, print_error, 
 /// A folder is searched for at most this many files.
 const MAX_FILES: usize = 2000;
 
-/// What was read of files, in our notations.
-struct Read {
-    text: String,
-    remarks: Vec<String>,
-    left_out: Vec<String>,
-}
-
 /// Prints a file in Pamela as a mission or a plant model.
 pub fn import_pamela(file: &Path, text: &str, format: Format) -> anyhow::Result<ExitCode> {
     let read = pamela::translate(&short_name(file), text).context("cannot read the model")?;
-    print(&Read { text: read.text, remarks: read.remarks, left_out: read.left_out }, file, format)
+    print(&read, file, format)
 }
 
 /// Prints the classes of files in JMPL as a plant model. Folders among `more`, and the folder of `file`, are searched for
@@ -64,7 +57,7 @@ pub fn import_jmpl(file: &Path, text: String, more: &[PathBuf], format: Format) 
         library.push(source(path)?);
     }
     let read = jmpl::translate(&files, &library).context("cannot read the model")?;
-    print(&Read { text: read.model, remarks: read.remarks, left_out: read.left_out }, file, format)
+    print(&read, file, format)
 }
 
 fn source(path: &Path) -> anyhow::Result<SourceFile> {
@@ -96,7 +89,7 @@ fn collect(folder: &Path, is_deep: bool, found: &mut Vec<PathBuf>) {
 }
 
 /// Prints what was read, with the errors that `enroute check` finds in it.
-fn print(read: &Read, file: &Path, format: Format) -> anyhow::Result<ExitCode> {
+fn print(read: &Translation, file: &Path, format: Format) -> anyhow::Result<ExitCode> {
     let diagnostics = Opened::new(file, read.text.clone(), Goal::Default).compile_all()?.diagnostics;
     let problems = Problem::all(&diagnostics, &read.text);
     match format {

@@ -12,6 +12,8 @@ mod parser;
 mod syntax;
 mod write;
 
+use crate::Translation;
+
 pub use error::JmplError;
 
 /// A file by its name and its text.
@@ -19,17 +21,6 @@ pub use error::JmplError;
 pub struct SourceFile {
     pub name: String,
     pub text: String,
-}
-
-/// A plant model that was read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Translation {
-    /// The model in the prefix notation.
-    pub model: String,
-    /// What may be meant in another way than it is read.
-    pub remarks: Vec<String>,
-    /// What the model lacks, each with file and line.
-    pub left_out: Vec<String>,
 }
 
 /// Whether a file is JMPL, or one of the files beside it, by the end of its name.

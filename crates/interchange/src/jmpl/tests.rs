@@ -1,6 +1,7 @@
 //! Models of our own in JMPL, and what becomes of them.
 
-use super::{JmplError, SourceFile, Translation, translate};
+use super::{JmplError, SourceFile, translate};
+use crate::Translation;
 
 const PIPES: &str = "
 // Water in a pipe.
@@ -46,8 +47,8 @@ fn read(text: &str) -> Translation {
 }
 
 fn has(model: &Translation, part: &str) {
-    let words = model.model.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains(part), "{part}\n{}", model.model);
+    let words = model.text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(part), "{part}\n{}", model.text);
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn a_class_with_structures_and_relations_becomes_a_class_with_parts() {
         has(&model, part);
     }
     assert!(model.remarks.iter().any(|remark| remark.contains("costs of transitions")), "{model:?}");
-    let parsed = rmpl::control::parse(&model.model);
+    let parsed = rmpl::control::parse(&model.text);
     assert_eq!(parsed.diagnostics, []);
 }
 
@@ -161,7 +162,7 @@ fn classes_of_a_library_are_written_if_they_are_needed() {
     let model = translate(&[file("house.jmpl", "class House { Lamp hall; }")], &library).expect("read");
     has(&model, "(DEFCLASS House () (PART hall Lamp) (MODE ok true))");
     has(&model, "(FAULT on gone 0.1)");
-    assert!(!model.model.contains("Unused") && model.left_out.is_empty(), "{model:?}");
+    assert!(!model.text.contains("Unused") && model.left_out.is_empty(), "{model:?}");
     let numbers = file("symbols.jmpl", "enum symbols { likely = \"0.05\" };");
     let model =
         translate(&[file("house.jmpl", "class House { Lamp hall; }"), numbers], &library).expect("read");

@@ -2,7 +2,7 @@
 //!
 //! A file in which a method has a body is a mission; one with transitions and without such a method is a plant model.
 //! A method with a body becomes an activity, or a scenario if no other method calls it; a primitive method becomes a primitive.
-//! Fields and modes that conditions speak of become states. What a mission cannot mean is left out and listed.
+//! Fields and modes that conditions mention become states. What a mission cannot mean is left out and listed.
 
 mod classes;
 mod instances;
@@ -11,6 +11,8 @@ mod names;
 mod plant;
 mod tree;
 
+use crate::Translation;
+
 /// Why a file cannot become a mission: it is not Pamela, or not well formed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}: {what}")]
@@ -18,17 +20,6 @@ pub struct PamelaError {
     pub file: String,
     pub line: u32,
     pub what: String,
-}
-
-/// A mission or a plant model that was read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Translation {
-    /// The mission in RMPL, or the model in the prefix notation.
-    pub text: String,
-    /// What may be meant in another way than it is read.
-    pub remarks: Vec<String>,
-    /// What the text lacks, each with file and line.
-    pub left_out: Vec<String>,
 }
 
 /// Whether a file is Pamela, by the end of its name.

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::Translation;
 use super::classes::{Class, Method};
 use super::names::{constant, mode_of, name, number};
 use super::tree::Tree;
+use crate::Translation;
 
 /// The mode of a class that has no modes.
 const ONLY_MODE: &str = "ok";

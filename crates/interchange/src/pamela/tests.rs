@@ -1,6 +1,7 @@
 //! Classes of our own in Pamela, and what becomes of them.
 
-use super::{Translation, translate};
+use super::translate;
+use crate::Translation;
 
 fn read(text: &str) -> Translation {
     translate("a.pamela", text).expect("it can be read")

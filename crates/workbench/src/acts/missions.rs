@@ -1,6 +1,6 @@
 //! What is done with the missions of the library: opening, naming, copying, deleting, and taking them out and in.
 
-use interchange::{is_network_file, jmpl, pamela};
+use interchange::{Translation, is_network_file, jmpl, pamela};
 use link::Request;
 use smol_str::SmolStr;
 use terrain::format::{FileFormat, refusal};
@@ -301,11 +301,11 @@ impl AppState {
     }
 
     /// Opens what was read of a model of another tool, and says how much was not.
-    fn open_model(&mut self, name: &str, read: &Model) {
+    fn open_model(&mut self, name: &str, read: &Translation) {
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         let id = self.library.add(stem, MissionKind::File, &read.text, self.frame.unix_millis);
         self.open_mission(&id);
-        let left_out = match read.left_out {
+        let left_out = match read.left_out.len() {
             0 => return self.window.done(format!("Converted {name} to RMPL.")),
             1 => "1 line".to_owned(),
             count => format!("{count} lines"),
@@ -371,23 +371,14 @@ impl AppState {
     }
 }
 
-/// What was read of a model of another tool.
-struct Model {
-    text: String,
-    /// How many lines were not read.
-    left_out: usize,
-}
-
 /// Reads a model of Livingstone or Pamela; `None` if the name says that the file is neither.
-fn read_model(name: &str, text: &str) -> Option<Result<Model, String>> {
+fn read_model(name: &str, text: &str) -> Option<Result<Translation, String>> {
     if pamela::is_pamela(name) {
-        let read = pamela::translate(name, text).map_err(|error| error.to_string());
-        return Some(read.map(|read| Model { text: read.text, left_out: read.left_out.len() }));
+        return Some(pamela::translate(name, text).map_err(|error| error.to_string()));
     }
     name.to_ascii_lowercase().ends_with(".jmpl").then(|| {
         let file = jmpl::SourceFile { name: name.to_owned(), text: text.to_owned() };
-        let read = jmpl::translate(&[file], &[]).map_err(|error| error.to_string());
-        read.map(|read| Model { text: read.model, left_out: read.left_out.len() })
+        jmpl::translate(&[file], &[]).map_err(|error| error.to_string())
     })
 }
 

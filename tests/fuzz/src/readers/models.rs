@@ -72,8 +72,8 @@ fn jmpl(input: &[u8]) -> Outcome {
     let file = SourceFile { name: "a.jmpl".to_owned(), text: text_of(input).into_owned() };
     match jmpl::translate(&[file], &[]) {
         Ok(model) => {
-            assert_is_well_formed(&rmpl::control::parse(&model.model).diagnostics, &model.model);
-            read(&format!("{} {}", magnitude(model.model.len()), model.left_out.join(" ")))
+            assert_is_well_formed(&rmpl::control::parse(&model.text).diagnostics, &model.text);
+            read(&format!("{} {}", magnitude(model.text.len()), model.left_out.join(" ")))
         }
         Err(reason) => refused(&reason.to_string()),
     }

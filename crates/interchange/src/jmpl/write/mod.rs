@@ -9,12 +9,12 @@ use std::fmt::Write as _;
 use interface::idle;
 use probability::{RANKS, decimal};
 
-use super::Translation;
 use super::error::JmplError;
 use super::evaluate::{Evaluator, Kind, MAX_PARTS, Names};
 use super::formula::{Formula, name};
 use super::harness::Harness;
 use super::syntax::{Arc, Attribute, Class, Enum, File, Place};
+use crate::Translation;
 
 /// The mode of a class that has no state vector.
 const ONLY_MODE: &str = "ok";
@@ -177,7 +177,7 @@ impl<'file> Writer<'file> {
             .map(|what| format!("; Not read: {what}\n"))
             .chain(self.evaluator.remarks.iter().map(|remark| format!("; Note: {remark}\n")));
         let text = comments.collect::<String>() + &text;
-        Ok(Translation { model: rmpl::control::format(&text), remarks: self.evaluator.remarks, left_out })
+        Ok(Translation { text: rmpl::control::format(&text), remarks: self.evaluator.remarks, left_out })
     }
 
     /// The guard of an arc, with what it speaks of noted; `None` if the arc is left out.

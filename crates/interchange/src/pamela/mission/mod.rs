@@ -6,11 +6,11 @@ mod statements;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::Translation;
 use super::classes::Method;
 use super::instances::Instances;
 use super::names::{name, number};
 use super::tree::Tree;
+use crate::Translation;
 
 /// A statement that does nothing.
 const NOTHING: &str = "delay[0,0]";
