@@ -8,7 +8,6 @@ use egui::{CentralPanel, Frame, Ui};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 use panels::{Context, Panels};
 use serde_json::Value;
-use text_editing::{Motion, TextCommand};
 use theme::icon::{self, Icon};
 use theme::structure;
 use workbench::command::{Command, CommandSender};
@@ -99,17 +98,7 @@ impl Enroute {
 
     /// Writes down what was typed into the text and no frame has taken in yet.
     pub fn keep_ahead(&mut self, egui: &egui::Context, events: &[egui::Event]) {
-        if !egui.memory(|memory| memory.has_focus(panels::editor_id())) {
-            return;
-        }
-        let keys = events.iter().filter_map(|event| match event {
-            egui::Event::Text(text) => Some(TextCommand::Insert(text.clone())),
-            egui::Event::Key { key: egui::Key::Enter, .. } => Some(TextCommand::NewLine),
-            egui::Event::Key { key: egui::Key::Backspace, .. } => Some(TextCommand::Delete(Motion::Left)),
-            egui::Event::Key { key: egui::Key::Delete, .. } => Some(TextCommand::Delete(Motion::Right)),
-            _ => None,
-        });
-        self.session.keep_ahead(&keys.collect::<Vec<_>>());
+        self.session.keep_ahead(&panels::typed_ahead(egui, events));
     }
 
     /// Shows one frame, filling `ui`. `render_state` is for panels that draw with wgpu.

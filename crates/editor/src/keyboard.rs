@@ -67,6 +67,15 @@ fn assistive(request: &egui::accesskit::ActionRequest, keyboard: &Keyboard) -> O
     }
 }
 
+/// What these events do to the text of an editor without a list, whatever else they may do.
+pub fn typed_ahead(events: &[Event]) -> Vec<TextCommand> {
+    let of_text = |event: &Event| match action_of(event, false)? {
+        EditorAction::Text(command) => Some(command),
+        _ => None,
+    };
+    events.iter().filter_map(of_text).collect()
+}
+
 /// What a key does to the list at the caret.
 fn popup_action(event: &Event) -> Option<EditorAction> {
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return None };

@@ -23,7 +23,7 @@ mod view;
 use egui::Ui;
 
 pub use action::EditorAction;
-pub use keyboard::{Keyboard, typed};
+pub use keyboard::{Keyboard, typed, typed_ahead};
 pub use view::{
     Diagnostic, EditorView, Highlight, LanguageService, Mark, MenuEntry, Popup, PopupItem, Reveal, Severity,
     Signature,

@@ -29,7 +29,7 @@ mod timeline;
 
 pub use empty::{show_empty, show_stale};
 pub use inline_code::without_backticks;
-pub use mission_text::{editor_id, typed_text};
+pub use mission_text::{editor_id, typed_ahead, typed_text};
 pub use panel::{Context, Panel};
 pub use plan::counted;
 pub use registry::Panels;

@@ -184,7 +184,10 @@ impl Session {
     /// next frame takes the keys in, and writes what it makes of them.
     pub fn keep_ahead(&mut self, keys: &[TextCommand]) {
         let document = &self.state.document;
-        if document.text().len() > LONGEST_TEXT_AHEAD || !document.other_carets().is_empty() {
+        if keys.is_empty()
+            || document.text().len() > LONGEST_TEXT_AHEAD
+            || !document.other_carets().is_empty()
+        {
             return;
         }
         let mut ahead = Document::new(document.text());

@@ -1,7 +1,8 @@
 //! What the editor's user wants, as commands of the workbench.
 
 use editor::{EditorAction, Keyboard};
-use egui::{Context, Id};
+use egui::{Context, Event, Id};
+use text_editing::TextCommand;
 use workbench::PanelKind;
 use workbench::command::Command;
 use workbench::state::AppState;
@@ -22,6 +23,15 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
         can_take_focus: state.window.dialog.is_none(),
     };
     editor::typed(context, &keyboard).into_iter().filter_map(|action| command(state, action)).collect()
+}
+
+/// What events do to the text that no frame has taken in yet: nothing, if the editor does not have the keyboard.
+pub fn typed_ahead(context: &Context, events: &[Event]) -> Vec<TextCommand> {
+    if context.memory(|memory| memory.has_focus(editor_id())) {
+        editor::typed_ahead(events)
+    } else {
+        Vec::new()
+    }
 }
 
 /// The command for what the editor's user wants.

@@ -15,7 +15,7 @@ use workbench::state::editor::PopupKind;
 use crate::problems::severity;
 use crate::{Context, Panel};
 
-pub use keyboard::{editor_id, typed_text};
+pub use keyboard::{editor_id, typed_ahead, typed_text};
 
 #[derive(Default)]
 pub struct EditorPanel {
