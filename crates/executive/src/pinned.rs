@@ -162,7 +162,7 @@ impl PinnedPlan {
         }
     }
 
-    /// How the run is in which the environment does what is pinned; `None` if it chooses nothing in this plan.
+    /// The state of the run in which the environment does what is pinned; `None` if it chooses nothing in this plan.
     pub fn course(&self) -> Option<&Course> {
         match &self.effect {
             Effect::Constrained(_) => None,

@@ -462,7 +462,7 @@ impl WorldState {
     }
 }
 
-/// Whether a resource represents an order, such as that of the parts of an `unordered` block, and not for one of the mission.
+/// Whether a resource represents an order, such as that of the parts of an `unordered` block, and is not one of the mission.
 fn is_unnamed(resource: &Resource) -> bool {
     resource.name.contains('#')
 }

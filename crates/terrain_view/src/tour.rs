@@ -15,7 +15,7 @@ pub enum Shot {
     Vehicle(usize),
 }
 
-/// A stop that is at most such a part of the run is no reason to leave a vehicle.
+/// The camera stays at a vehicle that stops for at most this share of the run.
 const SHORT_STOP: f64 = 0.02;
 
 /// What the camera is on at `time` of a plan or run that ends at `end`.

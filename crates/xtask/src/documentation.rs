@@ -1,7 +1,7 @@
 //! Documentation that is checked with the libraries that the tests were built with.
 //!
 //! `cargo doc` reads metadata that only `cargo check` writes, for all dependencies. For examples in documentation cargo calls
-//! rustdoc with the libraries that tests use instead. This program is in for rustdoc there, and has it read the
+//! rustdoc with the libraries that tests use instead. This program replaces rustdoc there, and has it read the
 //! documentation of the same crate first, unless the library was not built again since that was found sound.
 
 use std::{

@@ -48,7 +48,7 @@ const TOLERATED: Duration = Duration::from_millis(100);
 const IS_SAVED: &str =
     "!Object.keys(localStorage).some((key) => key.startsWith('enroute/enroute/writing-1/'))";
 
-/// What came of all kills of a browser. Displays as the row of a table in Markdown.
+/// The result of all kills of a browser. Displays as the row of a table in Markdown.
 #[derive(Debug)]
 pub struct Deaths {
     victim: Victim,

@@ -53,7 +53,8 @@ impl Pins {
         self.version
     }
 
-    /// How the run is in which nature does what is pinned; `None` before one has begun, or if nature chooses nothing.
+    /// The state of the run in which the environment does what is pinned; `None` before it starts, or if the environment chooses
+    /// nothing.
     pub fn course(&self, snapshot: &Snapshot) -> Option<&Course> {
         self.plan(snapshot)?;
         self.pinned.as_ref()?.course()

@@ -17,7 +17,8 @@ fn the_newest_version_of_the_changelog_is_that_of_the_workspace() {
         if index == 0 && line == "Unreleased" {
             continue;
         }
-        let parts = heading.captures(line).unwrap_or_else(|| panic!("`## {line}` is no version with a date"));
+        let parts =
+            heading.captures(line).unwrap_or_else(|| panic!("`## {line}`: write a version and a date"));
         let number = [1, 2, 3].map(|part| parts[part].parse().expect("a number"));
         versions.push((number, parts[4].to_owned()));
     }

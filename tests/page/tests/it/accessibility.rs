@@ -62,7 +62,7 @@ fn what_selects_something_says_whether_it_is_current_and_is_not_pressed() -> Res
     Ok(())
 }
 
-/// A browser takes whatever lies within an element with a listener for clickable, and a screen reader says so.
+/// A browser treats everything within an element that has a listener as clickable, and a screen reader says so.
 #[test]
 fn nothing_is_clickable_because_of_what_it_lies_in() -> Result<()> {
     let page = Opened::planned()?;
