@@ -34,7 +34,9 @@ fn a_new_version_opens_when_the_only_tab_is_loaded_again_and_not_under_another_t
     let published = std::env::temp_dir().join(format!("enroute-updated-{}", std::process::id()));
     dist::pack(&SITE, &published)?;
     let server = SiteServer::start(&published, 0, false)?;
-    let context = BROWSER.get()?.open_context()?;
+    // The browser ends with the last test that has it.
+    let browser = BROWSER.get()?;
+    let context = browser.open_context()?;
     let (tab, beside) = (context.open_tab(800, 500)?, context.open_tab(800, 500)?);
     for tab in [&tab, &beside] {
         tab.go_to(server.url())?;
