@@ -27,10 +27,17 @@ self.addEventListener("message", (event) => {
   if (event.data === "take over") event.waitUntil(takeOver(event.ports[0]));
 });
 
+// Tabs that were just left or closed count for a moment; a tab that starts waits this long for them to go.
+const LOOKS = 10;
+const LOOK_MILLIS = 50;
+
 /** Takes over from an earlier version, unless more than one tab shows it, and tells the tab that asked. */
 async function takeOver(tab) {
-  const tabs = await self.clients.matchAll({ type: "window", includeUncontrolled: true });
-  const isAlone = tabs.length === 1;
+  let isAlone = false;
+  for (let look = 0; look < LOOKS && !isAlone; look++) {
+    if (look > 0) await new Promise((resolve) => setTimeout(resolve, LOOK_MILLIS));
+    isAlone = (await self.clients.matchAll({ type: "window", includeUncontrolled: true })).length === 1;
+  }
   tab.postMessage(isAlone);
   if (isAlone) await self.skipWaiting();
 }

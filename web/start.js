@@ -167,28 +167,25 @@ if (isPublished) {
 }
 
 /**
- * Lets a newer version take over that is kept and waits, if no other tab shows this one. The page is loaded again then; it goes
- * on with this version if the newer one does not take over.
+ * Lets a newer version take over that is kept and waits, if no other tab shows this one. The page is loaded again then, also
+ * where that takes long and it has gone on with this version meanwhile: the two are not mixed.
  */
 async function giveWay() {
   try {
     const { serviceWorker } = navigator;
     const waiting = (await serviceWorker?.getRegistration())?.waiting;
     if (!waiting || !serviceWorker.controller) return;
+    serviceWorker.addEventListener("controllerchange", () => location.reload(), { once: true });
     const { port1, port2 } = new MessageChannel();
-    const isOver = new Promise((resolve) => {
-      port1.onmessage = ({ data }) => data || resolve(false);
-      serviceWorker.addEventListener("controllerchange", () => resolve(true), { once: true });
-      setTimeout(resolve, HAND_OVER_PATIENCE_MILLIS, false);
+    const goesOn = new Promise((resolve) => {
+      port1.onmessage = ({ data }) => data || resolve();
+      setTimeout(resolve, HAND_OVER_PATIENCE_MILLIS);
     });
     waiting.postMessage("take over", [port2]);
-    if (!(await isOver)) return;
+    await goesOn;
   } catch {
     // A browser that keeps no copies of pages has no newer version of this one.
-    return;
   }
-  location.reload();
-  await new Promise(() => {});
 }
 
 async function keepCopy() {
