@@ -65,6 +65,8 @@ struct Place {
     is_open: bool,
     /// By straight lines.
     straight: Bounds,
+    /// How far its vehicle may be from these places, in meters, because it followed another one there.
+    behind_m: f64,
 }
 
 /// The least that a leg takes, in time and in meters; no time where it cannot be driven.
@@ -238,7 +240,23 @@ impl<'mission> Departures<'mission> {
         let open = pairs(movement, &from, &to).filter(|ends| !is_known(known, ends));
         let open: Vec<Bounds> = open.map(|ends| self.straight(movement, &ends)).collect();
         let known = known.iter().map(|known| Bounds { least: known.least, meters: known.meters });
-        least_of(known.chain(open))
+        self.nearer(movement, least_of(known.chain(open)), place.behind_m)
+    }
+
+    /// Bounds of a movement that may start so many meters nearer to its goal.
+    fn nearer(&self, movement: &Movement, bounds: Bounds, by_m: f64) -> Bounds {
+        if by_m <= 0.0 {
+            return bounds;
+        }
+        let by_units = by_m / movement.route.speed_mps.1.to_f64() / self.unit_seconds();
+        let sooner = |least: Time| round_down((least.to_f64() - by_units).max(0.0)).unwrap_or_default();
+        let shorter =
+            |meters: Rational| parts_rounded_down((meters.to_f64() - by_m).max(0.0)).unwrap_or_default();
+        Bounds { least: bounds.least.map(sooner), meters: bounds.meters.map(shorter) }
+    }
+
+    fn unit_seconds(&self) -> f64 {
+        self.problem.program.options.time_unit.seconds() as f64
     }
 
     fn listed(&self, least: impl Fn(&Movement, &Place) -> Option<Time>) -> Vec<Departure> {
@@ -297,11 +315,15 @@ impl<'mission> Departures<'mission> {
                 movement.ground = Some(EndGround { standing, space });
             }
             let straights = pairs(&movement, &from, &to).map(|ends| self.straight(&movement, &ends));
+            let (world, leader) = (&self.problem.program.world, movement.route.vehicles[0]);
+            let spacing_m = |vehicles: &[usize]| planning::spacing_m(world, vehicles);
+            let behind_m = self.spots.behind_m(occurrence, leader, &middle, spacing_m);
             let place = Place {
                 value,
-                is_reached: !self.spots.before(occurrence, movement.route.vehicles[0], &middle).is_empty(),
-                is_open: from.len() > 1 || to.len() > 1,
-                straight: least_of(straights),
+                is_reached: !self.spots.before(occurrence, leader, &middle).is_empty(),
+                is_open: from.len() > 1 || to.len() > 1 || behind_m > 0.0,
+                straight: self.nearer(&movement, least_of(straights), behind_m),
+                behind_m,
                 middle,
             };
             movement.places.push(place);
@@ -356,9 +378,8 @@ impl<'mission> Departures<'mission> {
                 distance(&from_m, &first.position_m) + inner + distance(&last_m, &to_m)
             }
         };
-        let unit_seconds = self.problem.program.options.time_unit.seconds();
         let speed_mps = movement.route.speed_mps.1.to_f64();
-        let least = round_down(meters / speed_mps / Rational::from_integer(unit_seconds).to_f64());
+        let least = round_down(meters / speed_mps / self.unit_seconds());
         Bounds { least: Some(least.unwrap_or_default()), meters: parts_rounded_down(meters) }
     }
 }

@@ -8,7 +8,7 @@ use tpn::{Network, Plan};
 use crate::ground::Grounds;
 use crate::listing;
 use crate::planning::{self, Planned, Problem};
-use crate::traverse::{self, Paths};
+use crate::traverse::Paths;
 
 /// Returns what `planned` would be if planning had found the plan that `read` reads. Fails with the reason if it is not a plan
 /// of the mission.
@@ -24,8 +24,7 @@ pub(crate) fn planned(
     let is_own = own.is_some();
     let plan = own.map_or_else(|| read(problem.network), Ok)?;
     let base = if is_own { &planned.network } else { problem.network };
-    let routes = traverse::routes(base, problem.program, &plan, &[]);
-    let inserted = listing::inserted(problem, routes, grounds, paths)?;
+    let inserted = listing::inserted(problem, (base, &plan), grounds, paths)?;
     let (network, plan) = if is_own {
         (Arc::clone(&planned.network), plan)
     } else {
@@ -42,5 +41,5 @@ pub(crate) fn planned(
         trace: None,
         unplannable: None,
     };
-    Ok(planning::conclude(problem, grounds, network, outcome, inserted))
+    Ok(planning::conclude(problem, network, outcome, inserted))
 }

@@ -52,12 +52,15 @@ pub(crate) struct EndGround {
 
 impl EndGround {
     /// The place itself, or the nearest one with room if it is beside its location: the same for a drive that leads there and
-    /// for the next one from there. A vehicle that has stopped on its way needs room for this route only.
+    /// for the next one from there. A vehicle that has stopped on its way, or behind another one, needs room for this route
+    /// only.
     pub(crate) fn free_m(&self, place: &Waypoint) -> Point2<f64> {
         let place_m = place.position_m;
         let free_m = match place.slot {
-            0 => None,
-            ON_THE_WAY => nearest_free(|place_m| self.space.is_free(place_m), place_m),
+            0 if !place.is_behind => None,
+            _ if place.is_behind || place.slot == ON_THE_WAY => {
+                nearest_free(|place_m| self.space.is_free(place_m), place_m)
+            }
             _ => nearest_free(|place_m| self.standing.0.iter().all(|space| space.is_free(place_m)), place_m),
         };
         free_m.unwrap_or(place_m)

@@ -153,7 +153,7 @@ impl Listing<'_, '_> {
             if self.ways.len() >= MAX_WAYS {
                 return None;
             }
-            let plans = self.plans_of_way(plan, routes, grounds, paths, stop);
+            let plans = self.plans_of_way(plan, &routes, grounds, paths, stop);
             self.ways.insert(way.clone(), plans);
         }
         Some(match self.ways.get(&way)? {
@@ -170,17 +170,16 @@ impl Listing<'_, '_> {
     fn plans_of_way(
         &self,
         plan: &Plan,
-        routes: Vec<Route>,
+        routes: &[Route],
         grounds: &mut Grounds,
         paths: &mut Paths,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<OfWay, String> {
         let mut network = self.problem.network.with_choices(plan.choices.iter().copied());
-        network.departures = Departures::new(self.problem, grounds).only(&routes);
+        network.departures = Departures::new(self.problem, grounds).only(routes);
         let network = Arc::new(network);
-        let ways: Vec<_> = routes.iter().map(|route| (route.occurrence, route.waypoints.clone())).collect();
         let problem = Problem { network: &network, ..*self.problem };
-        let inserted = inserted(&problem, routes, grounds, paths)?;
+        let inserted = inserted(&problem, (&network, plan), grounds, paths)?;
         let with_paths = Arc::new(planning::with_paths(&problem, &inserted));
         let options =
             Options { explain: false, relax: false, trace_events: None, best: 1, ..problem.options };
@@ -193,8 +192,8 @@ impl Listing<'_, '_> {
             .filter_map(|it| Some(snapshot::joined(it.legs.as_ref().ok()?).length_m()))
             .sum();
         let is_valid = |plan: &Plan| {
-            let own = traverse::routes(&with_paths, self.problem.program, plan, &[]);
-            own.iter().all(|route| ways.contains(&(route.occurrence, route.waypoints.clone())))
+            let own = planning::routes(&problem, &with_paths, plan, &inserted);
+            own.iter().all(|route| planning::is_inserted(route, &inserted))
                 && verify::check_plan(&with_paths, plan).valid
         };
         let mut plans: Vec<Plan> = outcome.plans.into_iter().filter(is_valid).collect();
@@ -223,26 +222,28 @@ pub(crate) fn network_of(
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Result<Network, String> {
-    let routes = traverse::routes(problem.network, problem.program, plan, &[]);
-    Ok(planning::with_paths(problem, &inserted(problem, routes, grounds, paths)?))
+    let inserted = inserted(problem, (problem.network, plan), grounds, paths)?;
+    Ok(planning::with_paths(problem, &inserted))
 }
 
-/// The paths of these routes; why there are none.
+/// The paths of a plan of some network; why there are none. A route may start where an earlier one leaves its formation.
 pub(crate) fn inserted(
     problem: &Problem<'_>,
-    routes: Vec<Route>,
+    (network, plan): (&Network, &Plan),
     grounds: &mut Grounds,
     paths: &mut Paths,
 ) -> Result<BTreeMap<OccurrenceId, Inserted>, String> {
     let mut inserted = BTreeMap::new();
     let Some(ground) = problem.ground else { return Ok(inserted) };
-    for route in routes {
+    loop {
+        let mut routes = planning::routes(problem, network, plan, &inserted).into_iter();
+        let Some(route) = routes.find(|route| !planning::is_inserted(route, &inserted)) else {
+            return Ok(inserted);
+        };
         let legs = planning::legs(problem, ground, grounds, paths, &route).map_err(|undrivable| {
             let name = &problem.network.occurrences[route.occurrence.index()].name;
             format!("{name} can't be driven {}", undrivable.reason)
         })?;
-        let waypoints = route.waypoints.clone();
-        inserted.insert(route.occurrence, Inserted { waypoints, legs: Ok(legs), route });
+        inserted.insert(route.occurrence, Inserted::new(ground, grounds, route, Ok(legs)));
     }
-    Ok(inserted)
 }

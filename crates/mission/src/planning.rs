@@ -13,7 +13,7 @@ use exact::{Bound, Rational, Time};
 use executive::Facts;
 use executive::facts::StandingPlace;
 use kirk::{Options, Outcome, Stats, Status};
-use motion::{SegmentTiming, SpeedLimits};
+use motion::{Formation, SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
 use rmpl::program::{self, Change, Measure, Program, World};
 use snapshot::blocked::name_blocked;
@@ -34,7 +34,7 @@ use crate::listing::{self, Listed};
 use crate::meetings::{self, KeepOuts, best_plan};
 use crate::programs::{self, Programs};
 use crate::separation::{self, Meeting};
-use crate::traverse::{self, Paths, Preference, Route, Waypoint};
+use crate::traverse::{self, Paths, Preference, Route};
 
 /// What to plan and how.
 #[derive(Clone, Copy)]
@@ -137,11 +137,46 @@ pub struct Planned {
 /// Rounds of planning and path finding; each adds the paths of at least one traverse or of a new start for one.
 const MAX_ROUNDS: usize = 64;
 
-/// A traverse as it is in the network: its way, and its legs, or why it can't be driven.
+/// A traverse as it is in the network: its route, and its legs, or why it can't be driven.
 pub(crate) struct Inserted {
-    pub(crate) waypoints: Vec<Waypoint>,
     pub(crate) legs: Result<Vec<Leg>, Undrivable>,
     pub(crate) route: Route,
+    /// Where its vehicles can be, whatever else they are led around.
+    pub(crate) space: Arc<ConfigurationSpace>,
+}
+
+impl Inserted {
+    pub(crate) fn new(
+        (key, map): (&MapKey, &Arc<Terrain>),
+        grounds: &mut Grounds,
+        route: Route,
+        legs: Result<Vec<Leg>, Undrivable>,
+    ) -> Self {
+        let space = grounds.space(key, map, &route.model, route.obstacles.clone()).exact;
+        Self { legs, route, space }
+    }
+}
+
+/// Whether the paths of a route are known, from where it starts.
+pub(crate) fn is_inserted(route: &Route, inserted: &BTreeMap<OccurrenceId, Inserted>) -> bool {
+    inserted.get(&route.occurrence).is_some_and(|known| known.route.waypoints == route.waypoints)
+}
+
+/// The routes of a plan, whose vehicles start from where formations end whose paths are known.
+pub(crate) fn routes(
+    problem: &Problem<'_>,
+    network: &Network,
+    plan: &Plan,
+    inserted: &BTreeMap<OccurrenceId, Inserted>,
+) -> Vec<Route> {
+    let world = &problem.program.world;
+    let ends = |route: &Route| {
+        let known = inserted.get(&route.occurrence).filter(|_| is_inserted(route, inserted));
+        let Some(Inserted { legs: Ok(legs), space, .. }) = known else { return Vec::new() };
+        let formation = Formation { spacing_m: spacing_m(world, &route.vehicles) };
+        formation.end_m(space, &snapshot::joined(legs), route.vehicles.len() as u32 - 1)
+    };
+    traverse::routes_between(network, problem.program, plan, places(problem), &ends)
 }
 
 /// Plans `problem`. If `stop` returns true before there is an answer, the outcome's status is [`Status::Limit`].
@@ -275,7 +310,7 @@ fn plan_order(
                 promised = order.promised;
                 &Problem { network: ordered.insert(Arc::new(order.network)), ..*problem }
             }
-            Err(answer) => return conclude(problem, grounds, answer.network, answer.outcome, answer.tried),
+            Err(answer) => return conclude(problem, answer.network, answer.outcome, answer.tried),
         }
     } else {
         problem
@@ -300,7 +335,7 @@ fn plan_order(
         if is_new {
             let mut described = with_paths(problem, &inserted);
             if let Some(departures) = &mut departures {
-                let routes = traverse::routes(&network, problem.program, found, places(problem));
+                let routes = routes(problem, &network, found, &inserted);
                 learn_inserted(problem, departures, &inserted);
                 described.departures = match starts {
                     Starts::Fixed => departures.only(&routes),
@@ -346,7 +381,7 @@ fn plan_order(
         // What is asked of the plan from here on, such as what else could be, is not bound to its places.
         Arc::make_mut(&mut network).departures = departures.bounds();
     }
-    conclude(problem, grounds, network, outcome, inserted)
+    conclude(problem, network, outcome, inserted)
 }
 
 /// Where the order of movements decides where vehicles stand, a plan is the best one, or there is none, only if that is so
@@ -524,8 +559,7 @@ fn order_movements<'input>(
             let legs = learn_legs(problem, ground, &mut departures, grounds, paths, route);
             is_drivable &= legs.is_ok();
             if legs.is_err() {
-                let (waypoints, route) = (route.waypoints.clone(), route.clone());
-                tried.insert(route.occurrence, Inserted { waypoints, legs, route });
+                tried.insert(route.occurrence, Inserted::new(ground, grounds, route.clone(), legs));
             }
         }
         let is_optimal = plan.quality.is_optimal;
@@ -539,7 +573,9 @@ fn order_movements<'input>(
         if !is_new || is_stopped {
             network.departures = departures.only(&routes);
             network.distances = counted(problem, || departures.distances_of(&routes));
-            let is_proven = !is_new && !is_refuted && is_optimal != Some(false);
+            // Where vehicles are that followed another one is known with the paths.
+            let is_known = !is_new && !routes.iter().any(|route| route.has_followed);
+            let is_proven = is_known && !is_refuted && is_optimal != Some(false);
             let bound = promised.or(outcome.bound).filter(|_| is_optimal.is_some() && !is_assumed);
             let promised = promised_values(problem, &asked, plan);
             let unproven = (!is_proven).then_some(Unproven { bound });
@@ -710,14 +746,13 @@ fn find_paths(
     inserted: &mut BTreeMap<OccurrenceId, Inserted>,
 ) -> bool {
     let mut is_new = false;
-    for route in traverse::routes(network, problem.program, plan, places(problem)) {
-        if inserted.get(&route.occurrence).is_some_and(|known| known.waypoints == route.waypoints) {
+    for route in routes(problem, network, plan, inserted) {
+        if is_inserted(&route, inserted) {
             continue;
         }
         let legs = found_legs(problem, ground, grounds, paths, &route);
         is_new = true;
-        let waypoints = route.waypoints.clone();
-        inserted.insert(route.occurrence, Inserted { waypoints, legs, route });
+        inserted.insert(route.occurrence, Inserted::new(ground, grounds, route, legs));
     }
     is_new
 }
@@ -804,10 +839,9 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 /// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up: between what it drives at least along
 /// its path and at most; costs are those of the path itself.
 fn count_meters(network: &mut Network, route: &Route, length_m: f64, world: &World) {
-    let followers = route.vehicles.len().saturating_sub(1);
-    let at_most_m = motion::driven_at_most_m(length_m, followers, leaves_out_rocks(world, route));
+    let at_most_m = motion::driven_at_most_m(length_m, route.company, leaves_out_rocks(world, route));
     let (Some(meters), Some(at_most)) = (rounded_up(length_m), rounded_up(at_most_m)) else { return };
-    let at_least = rounded_up(motion::driven_at_least_m(length_m, followers)).unwrap_or_default();
+    let at_least = rounded_up(motion::driven_at_least_m(length_m, route.company)).unwrap_or_default();
     let with = |amount: Rational, per_meter: Rational, meters: Rational| {
         per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
@@ -892,7 +926,7 @@ fn figures(
     route: &Route,
     legs: &[Leg],
     map: &Terrain,
-    space: &FreeSpace,
+    space: &ConfigurationSpace,
 ) -> Vec<PathFigures> {
     let unit_seconds = problem.program.options.time_unit.seconds();
     let Some(path) = traverse_path(route, legs, map) else { return Vec::new() };
@@ -903,7 +937,7 @@ fn figures(
         let greatest = own().try_fold(Time::ZERO, |sum, it| sum.checked_add(it.greatest.finite()?));
         PathFigures {
             length_m: path.legs.get(index).map_or(0.0, |leg| leg.segment_lengths_m.iter().sum()),
-            min_clearance_m: traverse::clearance_m(&space.exact, &leg.points_m),
+            min_clearance_m: traverse::clearance_m(space, &leg.points_m),
             max_slope_deg: map.steepest_slope_rad(&leg.points_m).to_degrees(),
             least_duration: least.unwrap_or_default(),
             greatest_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
@@ -927,7 +961,6 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
 
 pub(crate) fn conclude(
     problem: &Problem<'_>,
-    grounds: &mut Grounds,
     mut network: Arc<Network>,
     mut outcome: Outcome,
     inserted: BTreeMap<OccurrenceId, Inserted>,
@@ -938,7 +971,7 @@ pub(crate) fn conclude(
     let mut spaces = Vec::new();
     let mut counted_m = 0.0;
     let world = &problem.program.world;
-    if let (Some((key, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
+    if let (Some((_, map)), Some(plan)) = (problem.ground, outcome.plans.first()) {
         let routes = traverse::routes(&network, problem.program, plan, places(problem));
         if !network.distances.is_empty() {
             counted_m = routes.iter().map(|route| departures::counted_m(&network, route)).sum();
@@ -950,12 +983,12 @@ pub(crate) fn conclude(
             }
         }
         for route in routes {
-            let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
+            let Some(known) = inserted.get(&route.occurrence) else { continue };
+            let Inserted { legs: Ok(legs), space, .. } = known else { continue };
             let path = snapshot::joined(legs);
-            let space = grounds.space(key, map, &route.model, route.obstacles.clone());
-            let drive = drive(world, &network, plan, &route, path.clone(), &space.exact);
+            let drive = drive(world, &network, plan, &route, path.clone(), space);
             let tracks = drive.as_ref().map_or_else(|| vec![path.clone()], driving::tracks_m);
-            let clearances_m = tracks.iter().map(|it| traverse::clearance_m(&space.exact, &it.points_m));
+            let clearances_m = tracks.iter().map(|it| traverse::clearance_m(space, &it.points_m));
             let slopes_rad = tracks.iter().map(|it| map.steepest_slope_rad(&it.points_m));
             traverses.push(Traverse {
                 occurrence: route.occurrence,
@@ -963,11 +996,12 @@ pub(crate) fn conclude(
                 length_m: path.length_m(),
                 clearance_m: clearances_m.fold(f64::INFINITY, f64::min),
                 slope_max_rad: slopes_rad.fold(0.0, f64::max),
-                leg_figures: figures(problem, &route, legs, map, &space),
+                leg_figures: figures(problem, &route, legs, map, space),
                 legs: legs.clone(),
+                company: route.company as u32,
             });
             drives.extend(drive);
-            spaces.push((route.occurrence, space.exact));
+            spaces.push((route.occurrence, Arc::clone(space)));
         }
     }
     if let Some(plan) = outcome.plans.first_mut() {
@@ -1049,7 +1083,7 @@ pub fn motions_of(
 }
 
 /// Room between the centers of vehicles that drive together, in meters.
-fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
+pub(crate) fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
     let radii = |vehicle: &usize| vehicle::radius_m(world, *vehicle as u32);
     let mut widest: Vec<f64> = vehicles.iter().map(radii).collect();
     widest.sort_by(f64::total_cmp);

@@ -41,7 +41,7 @@ pub(crate) fn prove_rule(
     let mut with_paths = |plan: &Plan| {
         let routes = traverse::routes(problem.network, problem.program, plan, &[]);
         let departures = Departures::new(&problem, grounds).only(&routes);
-        let inserted = listing::inserted(&problem, routes, grounds, paths)?;
+        let inserted = listing::inserted(&problem, (problem.network, plan), grounds, paths)?;
         Ok(Network { departures, ..planning::with_paths(&problem, &inserted) })
     };
     let planned = &evaluated.planned;

@@ -295,11 +295,11 @@ impl ActivityExecutor for Driving<'_> {
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
         let length_m = course.drive.path.length_m();
         let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
-        let followers = course.drive.vehicles.len().saturating_sub(1);
+        let company = course.route.company;
         let leaves_out_rocks = planning::leaves_out_rocks(&self.problem.program.world, &course.route);
-        let at_most_m = motion::driven_at_most_m(length_m, followers, leaves_out_rocks);
+        let at_most_m = motion::driven_at_most_m(length_m, company, leaves_out_rocks);
         let taken_m = margin(at_most_m - length_m)?;
-        let given_m = margin(length_m - motion::driven_at_least_m(length_m, followers))?;
+        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company))?;
         let extra = |(seconds, meters): (f64, f64)| {
             let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
             Ok((units(seconds)?, meters))

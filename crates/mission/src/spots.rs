@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use executive::facts::StandingPlace;
+use motion::Formation;
 use rmpl::program::Program;
 use smol_str::SmolStr;
 use snapshot::standing::{self, Start};
@@ -30,7 +31,7 @@ impl Spots {
         let starts = standing::starts(program, &network.occurrences);
         let start = |(vehicle, start): (&rmpl::program::VehicleDecl, Option<Start>)| {
             let Start { place_m, slot, .. } = start?;
-            Some(Waypoint { name: vehicle.start.text.clone(), position_m: place_m, slot })
+            Some(Waypoint { name: vehicle.start.text.clone(), position_m: place_m, slot, is_behind: false })
         };
         Self {
             flies: (0..world.vehicles.len() as u32).map(|vehicle| vehicle::flies(world, vehicle)).collect(),
@@ -43,7 +44,7 @@ impl Spots {
     pub(crate) fn at(&self, location: &Waypoint, slot: usize, vehicle: usize) -> Waypoint {
         let spacing_m = self.spacings_m[usize::from(self.flies[vehicle])];
         let position_m = standing::place_m(location.position_m, slot, spacing_m);
-        Waypoint { name: location.name.clone(), position_m, slot }
+        Waypoint { name: location.name.clone(), position_m, slot, is_behind: false }
     }
 
     /// The place of a location that vehicles take that come there together, the first of them leading: the first one at which
@@ -165,8 +166,28 @@ impl<'mission> PossibleSpots<'mission> {
             name: at.name.clone(),
             position_m: it.place_m.into(),
             slot: ON_THE_WAY,
+            is_behind: false,
         });
         start.chain(slots.map(|slot| self.spots.at(at, slot, leader))).chain(stopped).collect()
+    }
+
+    /// How far the leader of a movement may be from these places, in meters, because it followed another vehicle there.
+    pub(crate) fn behind_m(
+        &self,
+        occurrence: OccurrenceId,
+        leader: usize,
+        at: &Waypoint,
+        spacing_m: impl Fn(&[usize]) -> f64,
+    ) -> f64 {
+        let arrivals = self.arrivals.get(&at.name).into_iter().flatten();
+        let behind_m = arrivals.filter_map(|arrival| {
+            let index = arrival.vehicles.iter().position(|&vehicle| vehicle == leader)?;
+            let is_its = index > 0
+                && arrival.occurrence != occurrence
+                && self.can_be_together(arrival.occurrence, occurrence);
+            is_its.then(|| Formation { spacing_m: spacing_m(&arrival.vehicles) }.reach_m(index))
+        });
+        behind_m.fold(0.0, f64::max)
     }
 
     /// Where vehicles may stand after a movement that brings them to a location.

@@ -40,6 +40,11 @@ pub struct Route {
     pub from: Option<SmolStr>,
     /// The places, in order: where the leader is before, then those that the call names.
     pub waypoints: Vec<Waypoint>,
+    /// How many others the leader drives with, or drove with when it came to where it starts: they move aside for each other,
+    /// so that it may start a little beside its path.
+    pub company: usize,
+    /// Whether the leader followed another vehicle to where it starts.
+    pub has_followed: bool,
 }
 
 /// A place that a route passes.
@@ -51,11 +56,28 @@ pub struct Waypoint {
     pub position_m: Point2<f64>,
     /// Which place of the location that is, where several vehicles stand there: 0 for the location itself.
     pub slot: usize,
+    /// Whether it is the place of a follower in a formation whose leader has that place of the location.
+    pub is_behind: bool,
 }
 
+/// Where the vehicles of a route are at its end, the leader's place first; nothing where its path is not known.
+pub(crate) type FormationEnds<'ends> = &'ends dyn Fn(&Route) -> Vec<Point2<f64>>;
+
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
-/// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped.
+/// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped. Vehicles that
+/// followed another one start from its place: see [`routes_between`].
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
+    routes_between(network, program, plan, places, &|_| Vec::new())
+}
+
+/// The same, where vehicles that followed another one start from where their formation `ends`.
+pub(crate) fn routes_between(
+    network: &Network,
+    program: &Program,
+    plan: &Plan,
+    places: &[StandingPlace],
+    ends: FormationEnds<'_>,
+) -> Vec<Route> {
     let world = &program.world;
     let spots = Spots::new(network, program);
     let index = WorldIndex::new(program);
@@ -74,6 +96,8 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
     moving.sort_by_key(|(id, _)| (departure(*id), *id));
     let moving = in_plan_order(network, plan, moving);
     let mut routes = Vec::new();
+    // Who drove with each vehicle last: how many, and whether it followed.
+    let mut company = vec![(0, false); world.vehicles.len()];
     let mut stopped: Vec<&StandingPlace> = places.iter().collect();
     for (id, moving) in moving {
         let start = network.occurrences[id.index()].start;
@@ -81,16 +105,26 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
         stopped.retain(|it| {
             let place = positions.of(it.vehicle as usize);
             let Some(place) = place.filter(|_| starts >= Some(it.since)) else { return true };
-            let place = Waypoint { position_m: it.place_m.into(), slot: ON_THE_WAY, ..place.clone() };
+            let position_m = it.place_m.into();
+            let place = Waypoint { position_m, slot: ON_THE_WAY, is_behind: false, ..place.clone() };
             positions.set(it.vehicle as usize, place);
             false
         });
         let place_of = |vehicle: usize| positions.of(vehicle).cloned();
         let Some(mut route) = route(network, (world, &index), id, &moving, &place_of) else { continue };
+        let followers = route.vehicles.len() - 1;
+        (route.company, route.has_followed) = company[route.vehicles[0]];
+        route.company = route.company.max(followers);
         if let Some(last) = route.waypoints.last_mut() {
             *last = spots.free(last, &route.vehicles, &positions);
-            for &vehicle in &route.vehicles {
-                positions.set(vehicle, last.clone());
+            let last = last.clone();
+            let ends_m = if followers > 0 { ends(&route) } else { Vec::new() };
+            for (index, &vehicle) in route.vehicles.iter().enumerate() {
+                let behind_m = ends_m.get(index).filter(|_| index > 0);
+                let behind =
+                    behind_m.map(|&position_m| Waypoint { position_m, is_behind: true, ..last.clone() });
+                positions.set(vehicle, behind.unwrap_or_else(|| last.clone()));
+                company[vehicle] = (followers, index > 0);
             }
         }
         routes.push(route);
@@ -175,7 +209,19 @@ fn route(
         .filter(|_| moving.moves.is_kinodynamic);
     let activity = &network.occurrences[id.index()].activity;
     let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
-    Some(Route { occurrence: id, vehicles, model, speed_mps, obstacles, limits, from, waypoints })
+    let (company, has_followed) = (vehicles.len() - 1, false);
+    Some(Route {
+        occurrence: id,
+        vehicles,
+        model,
+        speed_mps,
+        obstacles,
+        limits,
+        from,
+        waypoints,
+        company,
+        has_followed,
+    })
 }
 
 /// The route of a traverse whose leader is at a place before, or just the places that its call names; `None` if it is no

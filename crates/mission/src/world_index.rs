@@ -30,7 +30,8 @@ impl<'program> WorldIndex<'program> {
     /// The middle of a location.
     pub(crate) fn waypoint(&self, name: &str) -> Option<Waypoint> {
         let location = self.locations.get(name)?;
-        Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into(), slot: 0 })
+        let position_m = location.position_m.into();
+        Some(Waypoint { name: location.name.text.clone(), position_m, slot: 0, is_behind: false })
     }
 
     /// The position of a vehicle in the program's world.

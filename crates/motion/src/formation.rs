@@ -13,6 +13,15 @@ pub struct Formation {
     pub spacing_m: f64,
 }
 
+/// How far to the side of the path followers drive, in spacings.
+const SIDE_SPACINGS: f64 = 0.5;
+/// One that hangs back does so by so many spacings at a time, and so many times at most.
+const STEP_SPACINGS: f64 = 0.125;
+const MAX_HANGING: u32 = 64;
+/// Rings around a place on which another one is looked for: so many spacings apart, and so many of them.
+const RING_SPACINGS: f64 = 0.25;
+const MAX_RINGS: u32 = 24;
+
 impl Formation {
     /// Where the leader and `followers` vehicles behind it are when the leader has come `traveled_m` along its path.
     ///
@@ -31,14 +40,14 @@ impl Formation {
         let mut positions = vec![leader];
         let traveled = traveled_m.min(path.length_m());
         for follower in 1..=followers {
-            let side = if follower % 2 == 1 { 0.5 } else { -0.5 };
-            let step = 0.125 * self.spacing_m;
+            let side = if follower % 2 == 1 { SIDE_SPACINGS } else { -SIDE_SPACINGS };
+            let step = STEP_SPACINGS * self.spacing_m;
             // A turn may bring the leader back past its followers: hanging back further than this does not help.
             let mut hanging = 0;
             let place = loop {
                 let along = traveled - f64::from(follower) * self.spacing_m - f64::from(hanging) * step;
                 let place = self.place_beside(space, path, along, side);
-                if self.keeps_apart(place, &positions) || hanging == 64 {
+                if self.keeps_apart(place, &positions) || hanging == MAX_HANGING {
                     break place;
                 }
                 hanging += 1;
@@ -51,6 +60,18 @@ impl Formation {
             positions.push(place);
         }
         positions
+    }
+
+    /// Where they are when the leader has come to the end of its path.
+    pub fn end_m(self, space: &ConfigurationSpace, path: &Path, followers: u32) -> Vec<Point2<f64>> {
+        self.positions_m(space, path, path.length_m(), followers)
+    }
+
+    /// No follower of so many is farther from its leader than this, in meters, by ways that are free.
+    pub fn reach_m(self, followers: usize) -> f64 {
+        let hanging = STEP_SPACINGS * f64::from(MAX_HANGING);
+        let ring = RING_SPACINGS * f64::from(MAX_RINGS);
+        self.spacing_m * (followers as f64 + SIDE_SPACINGS + hanging + ring)
     }
 
     fn keeps_apart(self, place: Point2<f64>, others: &[Point2<f64>]) -> bool {
@@ -85,11 +106,11 @@ impl Formation {
         others: &[Point2<f64>],
     ) -> Point2<f64> {
         const DIRECTIONS: u32 = 24;
-        (1..=24)
+        (1..=MAX_RINGS)
             .flat_map(|ring| (0..DIRECTIONS).map(move |direction| (ring, direction)))
             .map(|(ring, direction)| {
                 let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
-                let radius = 0.25 * self.spacing_m * f64::from(ring);
+                let radius = RING_SPACINGS * self.spacing_m * f64::from(ring);
                 place + UnitComplex::new(angle) * Vector2::new(radius, 0.0)
             })
             .find(|&candidate| space.is_free(candidate) && self.keeps_apart(candidate, others))

@@ -119,6 +119,8 @@ pub struct Traverse {
     pub slope_max_rad: f64,
     /// What each leg comes to, in order.
     pub leg_figures: Vec<PathFigures>,
+    /// How many others its leader drives with, or drove with when it came to where it starts.
+    pub company: u32,
 }
 
 /// What a path comes to.
