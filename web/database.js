@@ -20,7 +20,8 @@ export function openDatabase(name, store) {
  */
 export async function transact(database, store, mode, act, durability = "strict") {
   for (;;) {
-    await shown;
+    // What is written is committed at once and keeps no other page waiting, so also a page that is put away writes.
+    if (mode !== "readwrite" || !commits) await shown;
     const wasShown = shown;
     try {
       return await tryOnce(database, store, mode, act, durability);
@@ -30,6 +31,9 @@ export async function transact(database, store, mode, act, durability = "strict"
     }
   }
 }
+
+/** Whether this browser takes the writing of a transaction as complete before it has told the page of it. */
+const commits = "commit" in (globalThis.IDBTransaction?.prototype ?? {});
 
 const running = new Set();
 let shown = Promise.resolve();
@@ -65,6 +69,6 @@ function tryOnce(database, store, mode, act, durability) {
     request = act(transaction.objectStore(store));
     // Otherwise the browser waits until the page has heard that each request succeeded, which a page that is drawing and
     // hears of more and more keys is told late: what was typed for seconds would not be on the disk.
-    if (mode === "readwrite") transaction.commit?.();
+    if (mode === "readwrite" && commits) transaction.commit();
   });
 }

@@ -269,7 +269,9 @@ impl Remote for Enroute {
     }
 
     fn set_source(&mut self, text: &str) {
-        self.run(Command::SetSource(text.to_owned()));
+        self.session.set_source(text);
+        self.follow_effects();
+        self.egui.request_repaint();
     }
 
     fn source(&self) -> String {

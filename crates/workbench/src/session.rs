@@ -219,6 +219,15 @@ impl Session {
         }
     }
 
+    /// Does what was asked from outside, and keeps what came of it before a frame shows it: a browser may put the page away,
+    /// and open another one, before there is a frame.
+    fn do_at_once(&mut self, command: Command) {
+        self.apply(vec![command]);
+        let now_secs = self.state.frame.now_secs;
+        self.autosave.follow(&mut self.state, self.host.as_mut(), now_secs);
+        self.do_effects();
+    }
+
     fn do_effects(&mut self) {
         // A text ends what was asked of the one before; what is asked of this one comes after it.
         self.post_text();
@@ -334,12 +343,12 @@ impl Remote for Session {
                 known: EXAMPLES.iter().map(|example| example.name.to_owned()).collect(),
             });
         }
-        self.apply(vec![Command::OpenExample(name.into())]);
+        self.do_at_once(Command::OpenExample(name.into()));
         Ok(())
     }
 
     fn set_source(&mut self, text: &str) {
-        self.apply(vec![Command::SetSource(text.to_owned())]);
+        self.do_at_once(Command::SetSource(text.to_owned()));
     }
 
     fn source(&self) -> String {
@@ -348,7 +357,7 @@ impl Remote for Session {
 
     fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError> {
         let command = registry::from_json(&self.state, command, arguments)?;
-        self.apply(vec![command]);
+        self.do_at_once(command);
         Ok(())
     }
 

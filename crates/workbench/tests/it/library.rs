@@ -209,6 +209,19 @@ fn a_killed_browser_finds_each_key_and_the_open_mission_on_the_shelf() {
     assert_eq!(names(&app), ["Enroute (copy)"]);
 }
 
+/// A browser may put a page away, and open another one, before there is a frame.
+#[test]
+fn what_is_asked_from_outside_is_kept_without_a_frame() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    app.session.set_source("one");
+    assert_eq!(text_of(&start_in(Rc::clone(&world))), "one");
+    app.session.dispatch("edit.undo", &json!({})).expect("a command");
+    let undone = text_of(&app);
+    assert_ne!(undone, "one");
+    assert_eq!(text_of(&start_in(world)), undone);
+}
+
 #[test]
 fn what_no_frame_has_taken_in_is_written_ahead_of_it_and_given_up_for_what_the_frame_has() {
     let typing = |world: &Rc<World>| {
