@@ -52,8 +52,8 @@ pub struct Contact {
 pub struct Revision {
     /// Activities under way, each with how it will go instead.
     pub executions: Vec<(OccurrenceId, ActivityExecution)>,
-    /// What will be read from the plant, in order of time; instead of all that was to be read.
-    pub readings: Vec<PlantReading>,
+    /// What will be read from the plant, in order of time; instead of all that was to be read, if that changes.
+    pub readings: Option<Vec<PlantReading>>,
 }
 
 /// That the mode of a component of the plant is another one, as far as that can be told.

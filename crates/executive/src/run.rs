@@ -695,8 +695,8 @@ impl Run<'_> {
         }
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
-        self.expect_meters(event.occurrence, &execution).map_err(too_late)?;
-        self.revise();
+        self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
+        self.revise()?;
         self.expect(event.occurrence, execution);
         Ok(())
     }
@@ -714,17 +714,30 @@ impl Run<'_> {
     }
 
     /// Takes in what will go otherwise than it was said.
-    fn revise(&mut self) {
-        let Some(revision) = self.executor.revise() else { return };
+    fn revise(&mut self) -> Result<(), PlanError> {
+        let Some(revision) = self.executor.revise() else { return Ok(()) };
         for (occurrence, mut execution) in revision.executions {
-            if !self.executions.contains_key(&occurrence) {
+            let described = &self.stage.network.occurrences[occurrence.index()];
+            let event = format!("{}.end", described.name);
+            let too_late = |_: Overflow| PlanError::TooLate { event: event.clone() };
+            let started = self.stage.times[described.start.index()];
+            let Some(started) = started.filter(|_| self.executions.contains_key(&occurrence)) else {
                 continue;
-            }
-            self.coming.retain(|(of, entry)| *of != occurrence || entry.time <= self.now);
-            execution.entries.retain(|entry| entry.time > self.now);
+            };
+            let now = self.now;
+            self.coming.retain(|(of, entry)| *of != occurrence || entry.time <= now);
+            execution.entries.retain(|entry| entry.time > now);
+            self.passes.remove(&occurrence);
+            self.odometers.retain(|odometer| odometer.occurrence != occurrence || odometer.at <= now);
+            let since = now.checked_sub(started).ok_or(Overflow).map_err(too_late)?;
+            execution.extra_meters.retain(|&(after, _)| after > since);
+            self.expect_meters(occurrence, started, &execution).map_err(too_late)?;
             self.expect(occurrence, execution);
         }
-        self.readings = revision.readings.into();
+        if let Some(readings) = revision.readings {
+            self.readings = readings.into();
+        }
+        Ok(())
     }
 
     /// Plans again from now; an answer says why there is no plan.

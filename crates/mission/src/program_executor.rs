@@ -196,7 +196,7 @@ impl<'run> ProgramExecutor<'run> {
         while self.step()? {}
         let executions = concerned.iter().filter_map(|id| Some((*id, self.told.get(id)?.clone()))).collect();
         let readings = self.readings(network, first, now);
-        self.revision = Some(Revision { executions, readings });
+        self.revision = Some(Revision { executions, readings: Some(readings) });
         Ok(())
     }
 
@@ -364,7 +364,13 @@ impl ActivityExecutor for ProgramExecutor<'_> {
     }
 
     fn revise(&mut self) -> Option<Revision> {
-        self.revision.take()
+        match (self.revision.take(), self.others.revise()) {
+            (Some(mut own), Some(others)) => {
+                own.executions.extend(others.executions);
+                Some(own)
+            }
+            (own, others) => own.or(others),
+        }
     }
 
     fn granularity(&self) -> Time {

@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::{Overflow, Rational, Time};
-use executive::{ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening};
+use executive::{
+    ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening, Revision,
+};
 use motion::FineWorld;
 use nalgebra::{Point2, distance};
 use rmpl::program::Program;
@@ -93,7 +95,37 @@ fn ticks_per_unit(program: &Program) -> u32 {
     u32::try_from(program.options.time_unit.seconds()).unwrap_or(1).saturating_mul(TICKS_PER_SECOND)
 }
 
+/// A traverse that was started, with what driving it follows from.
+struct Departed {
+    course: Arc<Course>,
+    before: Before,
+    /// When it was driven, among all: it is driven with the ways of those before in sight.
+    turn: usize,
+}
+
+/// What was known when a traverse started.
+struct Before {
+    /// Where vehicles were that had driven.
+    stand: Stand,
+    /// What was seen by then that is not on the map.
+    seen_m: Vec<Point2<f64>>,
+}
+
+/// Where vehicles are that have driven, with their headings.
+type Stand = BTreeMap<u32, (Point2<f64>, f64)>;
+
+/// What driving a traverse has come to.
+struct Driven {
+    drive: SimulatedDrive,
+    execution: ActivityExecution,
+    seen: SeenMap,
+    stand: Vec<(u32, (Point2<f64>, f64))>,
+}
+
 /// Drives traverses when the executive starts them.
+///
+/// Each is driven to its end when it starts, with the ways of those under way in sight, which do not know of it. Where they
+/// would touch it, those who know least are driven again, as before until that moment.
 pub(crate) struct Driving<'run> {
     problem: &'run Problem<'run>,
     map: &'run Terrain,
@@ -103,13 +135,16 @@ pub(crate) struct Driving<'run> {
     seed: u64,
     /// What stands on the ground from the beginning; vehicles that fly are above it.
     world: FineWorld,
-    /// Where vehicles are that have driven, with their headings.
-    stand: BTreeMap<u32, (Point2<f64>, f64)>,
+    stand: Stand,
     /// Where vehicles stand before they first drive.
     starts: Vec<Option<Start>>,
     /// When vehicles touch first in what was driven.
     contact: Option<Contact>,
     drives: Vec<SimulatedDrive>,
+    /// For each of the drives.
+    departed: Vec<Departed>,
+    /// What those under way do otherwise since the last start.
+    revised: BTreeMap<OccurrenceId, ActivityExecution>,
     /// What range finders have seen that is not on the map: the map that all vehicles share.
     seen: SeenMap,
     /// How long traverses take whose durations the environment chooses, by name.
@@ -126,6 +161,9 @@ const AT_GOAL_M: f64 = 0.5;
 const STARTING_ROOM_M: f64 = 0.1;
 /// Meters driven are whole multiples of this fraction of a meter.
 const PARTS_PER_METER: u32 = 1000;
+/// How often traverses are driven again, at most, so that vehicles that were driven one after the other see each other.
+const MAX_AGAIN: usize = 6;
+
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
     pub(crate) fn new(
@@ -138,8 +176,6 @@ impl<'run> Driving<'run> {
         let solid = problem.program.world.obstacles.iter().filter(|it| it.is_solid());
         let obstacles: Vec<Obstacle> = solid.map(|it| snapshot::ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
-        let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
-        let seen = SeenMap::default();
         let (starts, contact) = (standing::starts(problem.program, &problem.network.occurrences), None);
         Self {
             problem,
@@ -148,22 +184,24 @@ impl<'run> Driving<'run> {
             courses,
             seed,
             world,
-            stand,
+            stand: Stand::new(),
             starts,
             contact,
-            drives,
-            seen,
-            chosen,
+            drives: Vec::new(),
+            departed: Vec::new(),
+            revised: BTreeMap::new(),
+            seen: SeenMap::default(),
+            chosen: BTreeMap::new(),
         }
     }
 
-    /// Where vehicles stand that do not drive at the moment or have not driven yet, with their numbers.
-    fn standing_m(&self) -> impl Iterator<Item = (u32, Point2<f64>)> + '_ {
+    /// Where vehicles stand that have driven, which is given, or have not driven yet, with their numbers.
+    fn standing_m<'a>(&'a self, stand: &'a Stand) -> impl Iterator<Item = (u32, Point2<f64>)> + 'a {
         let starts = self.starts.iter().enumerate();
         let starts = starts.filter_map(|(vehicle, start)| Some((vehicle as u32, (*start)?)));
-        let parked = starts.filter(|(vehicle, _)| !self.stand.contains_key(vehicle));
+        let parked = starts.filter(|(vehicle, _)| !stand.contains_key(vehicle));
         let parked = parked.map(|(vehicle, start)| (vehicle, self.start_m(vehicle, start)));
-        self.stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
+        stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
     }
 
     /// Where a vehicle is that has not driven yet: where its first drive starts, in its place of the formation.
@@ -178,8 +216,126 @@ impl<'run> Driving<'run> {
         track.and_then(|track| track.points_m.first().copied()).unwrap_or(start.place_m)
     }
 
+    /// Drives a traverse from its start to its end, or until it gives up.
+    fn driven(
+        &self,
+        network: &Network,
+        course: &Course,
+        (start, before): (Time, &Before),
+    ) -> Result<Driven, Overflow> {
+        let occurrence = course.drive.occurrence;
+        let name = network.occurrences[occurrence.index()].name.clone();
+        let tracks = driving::tracks_m(&course.drive);
+        let mut trip = Trip::new(self, course, tracks, network, (start, before));
+        let reached = trip.drive();
+        if let Err(reason) = &reached {
+            trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
+        } else if let Some(note) =
+            self.short_of_its_goal(course, trip.convoy.state(0).position_m, &before.stand)
+        {
+            trip.entries.push((trip.convoy.time_s(), note));
+        }
+        let driven_m = trip.driven_m();
+        let Trip {
+            frames,
+            entries,
+            passes,
+            reroutes,
+            least_clearance_m,
+            convoy,
+            extra_meters,
+            arrived_m,
+            seen,
+            ..
+        } = trip;
+        let time_s = convoy.time_s();
+        let unit_seconds = self.problem.program.options.time_unit.seconds();
+        let units = |seconds: f64| {
+            let seconds = Time::from_f64_up(seconds, TICKS_PER_SECOND);
+            seconds.and_then(|seconds| seconds.checked_div(unit_seconds)).ok_or(Overflow)
+        };
+        let duration = units(time_s)?;
+        let vehicles = || course.drive.vehicles.iter().copied();
+        let at_last = |index: usize| (convoy.state(index).position_m, convoy.state(index).heading_rad);
+        let stand = vehicles().enumerate().map(|(index, vehicle)| (vehicle, at_last(index))).collect();
+        let frames = vehicles().zip(frames);
+        let drive = SimulatedDrive {
+            occurrence,
+            start,
+            duration: reached.is_ok().then_some(duration),
+            vehicles: frames.map(|(vehicle, frames)| SimulatedVehicle { vehicle, frames }).collect(),
+            driven_m,
+            reroutes,
+            least_clearance_m,
+        };
+        let entry = |(seconds, text): (f64, String)| {
+            let time = start.checked_add(units(seconds)?).ok_or(Overflow)?;
+            Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
+        };
+        let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
+        let length_m = course.drive.path.length_m();
+        let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
+        let company = course.route.company;
+        let leaves_out_rocks = planning::leaves_out_rocks(&self.problem.program.world, &course.route);
+        let at_most_m = motion::driven_at_most_m(length_m, company, leaves_out_rocks);
+        let taken_m = margin(at_most_m - length_m)?;
+        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company))?;
+        let extra = |(seconds, meters): (f64, f64)| {
+            let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
+            Ok((units(seconds)?, meters))
+        };
+        let execution = ActivityExecution {
+            ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
+            entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
+            passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
+            extra_meters: (extra_meters.into_iter())
+                .filter(|&(_, extra_m)| extra_m > at_most_m - length_m)
+                .chain(arrived_m)
+                .map(extra)
+                .collect::<Result<_, _>>()?,
+            counted_margins: [taken_m, given_m],
+        };
+        Ok(Driven { drive, execution, seen, stand })
+    }
+
+    /// A drive of those that were started is as it was driven now.
+    fn take_in(&mut self, index: usize, driven: Driven) {
+        let Driven { drive, execution, seen, stand } = driven;
+        self.revised.insert(drive.occurrence, execution);
+        self.drives[index] = drive;
+        self.seen.extend(seen);
+        self.stand.extend(stand);
+    }
+
+    /// Where vehicles under way would touch, one of the two is driven again, which knows less than the other one of what was
+    /// driven since: as before until now.
+    fn keep_apart(&mut self, network: &Network, now: Time) -> Result<(), Overflow> {
+        let (program, now) = (self.problem.program, now.to_f64());
+        for round in 0..=MAX_AGAIN {
+            let touching = contact::first_contact(program, network, &self.drives);
+            self.contact = touching.as_ref().map(|it| it.contact.clone());
+            let Some(touching) = touching else { break };
+            let is_concerned = |drive: &SimulatedDrive| {
+                let mut vehicles = drive.vehicles.iter().filter(|it| touching.vehicles.contains(&it.vehicle));
+                drive.start.to_f64() <= touching.time
+                    && vehicles.any(|it| it.frames.last().is_some_and(|last| last.time > now))
+            };
+            let concerned = (0..self.drives.len()).filter(|&index| is_concerned(&self.drives[index]));
+            let Some(index) = concerned.min_by_key(|&index| self.departed[index].turn) else { break };
+            let last = self.departed.iter().map(|departed| departed.turn).max().unwrap_or_default();
+            let Departed { course, before, turn } = &self.departed[index];
+            if *turn == last || round == MAX_AGAIN {
+                break;
+            }
+            let again = self.driven(network, course, (self.drives[index].start, before))?;
+            self.departed[index].turn = last + 1;
+            self.take_in(index, again);
+        }
+        Ok(())
+    }
+
     /// That the leader of a traverse is not at the location that the traverse leads to, but beside it, and who stands there.
-    fn short_of_its_goal(&self, course: &Course, place: Point2<f64>) -> Option<String> {
+    fn short_of_its_goal(&self, course: &Course, place: Point2<f64>, stand: &Stand) -> Option<String> {
         let world = &self.problem.program.world;
         let goal = course.route.waypoints.last()?;
         let location = world.locations.iter().find(|location| location.name.text == goal.name)?;
@@ -191,8 +347,12 @@ impl<'run> Driving<'run> {
         let name =
             |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
         let &leader = course.drive.vehicles.first()?;
-        let there =
-            standing::nearest_other(world, &course.drive.vehicles, (location_m, short_m), self.standing_m());
+        let there = standing::nearest_other(
+            world,
+            &course.drive.vehicles,
+            (location_m, short_m),
+            self.standing_m(stand),
+        );
         let why = there.map_or_else(String::new, |other| format!(", where {} is parked", name(other)));
         Some(format!("{} stops {short_m:.2} m short of {}{why}", name(leader), location.name.text))
     }
@@ -236,7 +396,7 @@ impl ActivityExecutor for Driving<'_> {
                 ..ActivityExecution::default()
             });
         }
-        let name = network.occurrences[occurrence.index()].name.clone();
+        drop(courses);
         let tracks = driving::tracks_m(&course.drive);
         for (vehicle, track) in course.drive.vehicles.iter().zip(&tracks) {
             // Where it stands from the beginning no rock is, whatever the map leaves out.
@@ -245,76 +405,15 @@ impl ActivityExecutor for Driving<'_> {
                 self.world.clear_rocks(place, radius_m + STARTING_ROOM_M);
             }
         }
-        let mut trip = Trip::new(self, &course, tracks, network, start);
-        let reached = trip.drive();
-        if let Err(reason) = &reached {
-            trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
-        } else if let Some(note) = self.short_of_its_goal(&course, trip.convoy.state(0).position_m) {
-            trip.entries.push((trip.convoy.time_s(), note));
-        }
-        let driven_m = trip.driven_m();
-        let Trip {
-            frames,
-            entries,
-            passes,
-            reroutes,
-            least_clearance_m,
-            convoy,
-            extra_meters,
-            arrived_m,
-            seen,
-            ..
-        } = trip;
-        self.seen.extend(seen);
-        let time_s = convoy.time_s();
-        let unit_seconds = self.problem.program.options.time_unit.seconds();
-        let units = |seconds: f64| {
-            let seconds = Time::from_f64_up(seconds, TICKS_PER_SECOND);
-            seconds.and_then(|seconds| seconds.checked_div(unit_seconds)).ok_or(Overflow)
-        };
-        let duration = units(time_s)?;
-        let vehicles = course.drive.vehicles.iter().zip(frames);
-        for (index, &vehicle) in course.drive.vehicles.iter().enumerate() {
-            let state = convoy.state(index);
-            self.stand.insert(vehicle, (state.position_m, state.heading_rad));
-        }
-        self.drives.push(SimulatedDrive {
-            occurrence,
-            start,
-            duration: reached.is_ok().then_some(duration),
-            vehicles: vehicles.map(|(&vehicle, frames)| SimulatedVehicle { vehicle, frames }).collect(),
-            driven_m,
-            reroutes,
-            least_clearance_m,
-        });
-        self.contact = contact::first_contact(self.problem.program, network, &self.drives);
-        let entry = |(seconds, text): (f64, String)| {
-            let time = start.checked_add(units(seconds)?).ok_or(Overflow)?;
-            Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
-        };
-        let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
-        let length_m = course.drive.path.length_m();
-        let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
-        let company = course.route.company;
-        let leaves_out_rocks = planning::leaves_out_rocks(&self.problem.program.world, &course.route);
-        let at_most_m = motion::driven_at_most_m(length_m, company, leaves_out_rocks);
-        let taken_m = margin(at_most_m - length_m)?;
-        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company))?;
-        let extra = |(seconds, meters): (f64, f64)| {
-            let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
-            Ok((units(seconds)?, meters))
-        };
-        Ok(ActivityExecution {
-            ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
-            entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
-            passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
-            extra_meters: (extra_meters.into_iter())
-                .filter(|&(_, extra_m)| extra_m > at_most_m - length_m)
-                .chain(arrived_m)
-                .map(extra)
-                .collect::<Result<_, _>>()?,
-            counted_margins: [taken_m, given_m],
-        })
+        let seen_m = self.seen.known_at(start.to_f64());
+        let before = Before { stand: self.stand.clone(), seen_m };
+        let driven = self.driven(network, &course, (start, &before))?;
+        let turn = self.departed.iter().map(|departed| departed.turn + 1).max().unwrap_or(0);
+        self.departed.push(Departed { course, before, turn });
+        self.drives.push(driven.drive.clone());
+        self.take_in(self.drives.len() - 1, driven);
+        self.keep_apart(network, start)?;
+        Ok(self.revised.remove(&occurrence).unwrap_or_default())
     }
 
     fn granularity(&self) -> Time {
@@ -337,6 +436,11 @@ impl ActivityExecutor for Driving<'_> {
         self.contact.clone()
     }
 
+    fn revise(&mut self) -> Option<Revision> {
+        let executions: Vec<_> = std::mem::take(&mut self.revised).into_iter().collect();
+        (!executions.is_empty()).then_some(Revision { executions, readings: None })
+    }
+
     fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
         let now = now.to_f64();
         for drive in self.drives.iter_mut().filter(|drive| of.contains(&drive.occurrence)) {
@@ -353,7 +457,8 @@ impl ActivityExecutor for Driving<'_> {
             }
         }
         self.seen.forget_after(now);
-        self.contact = contact::first_contact(self.problem.program, network, &self.drives);
+        let touching = contact::first_contact(self.problem.program, network, &self.drives);
+        self.contact = touching.map(|it| it.contact);
     }
 }
 
@@ -380,5 +485,56 @@ pub(crate) fn put_into(motions: &mut [VehicleMotion], drives: &[SimulatedDrive])
             }));
             motion.keyframes.sort_by_key(|frame| frame.time);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use snapshot::Goal;
+
+    use super::*;
+    use crate::Grounds;
+    use crate::traverse::Paths;
+
+    /// Two rovers that drive to one place over ground with rocks that their map does not show.
+    const SOURCE: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+location P0 (17, 27); location P1 (62, 26); location P2 (30, 67); location P4 (40, 49);
+vehicle V0 : ATRV-Jr at P0; vehicle V1 : ATRV-Jr at P1;
+primitive Drive(r, to)[0,200] moves r speed (0.005, 0.3);
+scenario S[0,600] = { Drive(V0, P2), Drive(V1, P2) }";
+
+    /// A traverse that is driven again for one that starts later does what it did until then.
+    #[test]
+    fn what_has_happened_does_not_depend_on_what_starts_later() {
+        let parse = rmpl::parse(SOURCE);
+        let (program, mut diagnostics) = (parse.program(), parse.diagnostics());
+        let network = crate::compile(&program, &Goal::Default, &mut diagnostics).expect("it compiles");
+        let network = Arc::new(network);
+        let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+        let (ground, _) = grounds.resolve(&program);
+        let (key, map) = ground.as_ref().expect("a map");
+        let (mut driven_again, now) = (0, Time::new(1, 10).expect("it fits"));
+        for seed in 0..12 {
+            let problem = Problem { ground: Some((key, map)), seed, ..Problem::new(&network, &program) };
+            let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+            let courses = RefCell::new(Courses::default());
+            courses.borrow_mut().learn(&program, &planned);
+            let [first, second] = [0, 1].map(|index| planned.traverses[index].occurrence);
+            let mut driving = Driving::new(&problem, map, &[], &courses, seed);
+            let until_now = |driving: &Driving<'_>| {
+                let frames = driving.drives[0].vehicles[0].frames.iter();
+                frames.take_while(|frame| frame.time < now.to_f64()).cloned().collect::<Vec<_>>()
+            };
+            driving.start(&planned.network, first, Time::ZERO).expect("its times fit");
+            let before = (until_now(&driving), driving.drives[0].clone());
+            driving.revise();
+            driving.start(&planned.network, second, now).expect("its times fit");
+            assert_eq!(until_now(&driving), before.0, "seed {seed}");
+            assert_eq!(driving.contact(), None, "seed {seed}");
+            let is_revised = driving.revise().is_some_and(|it| it.executions.iter().any(|it| it.0 == first));
+            assert_eq!(is_revised, driving.drives[0] != before.1, "seed {seed}");
+            driven_again += usize::from(is_revised);
+        }
+        assert!(driven_again > 0, "none is driven again");
     }
 }

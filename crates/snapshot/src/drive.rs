@@ -55,4 +55,13 @@ impl SimulatedVehicle {
         let after = self.frames.partition_point(|frame| frame.time <= time);
         self.frames.get(after.checked_sub(1)?)
     }
+
+    /// Where it was at `time`, on an even way between frames; `None` before it set out.
+    pub fn place_m(&self, time: f64) -> Option<Point2<f64>> {
+        let after = self.frames.partition_point(|frame| frame.time <= time);
+        let before = self.frames.get(after.checked_sub(1)?)?;
+        let Some(next) = self.frames.get(after) else { return Some(before.position_m) };
+        let share = (time - before.time) / (next.time - before.time);
+        Some(before.position_m + (next.position_m - before.position_m) * share)
+    }
 }

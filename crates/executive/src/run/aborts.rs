@@ -85,7 +85,7 @@ impl Run<'_> {
             for happening in self.state.abandon(&network, &changing, &used) {
                 self.write(happening);
             }
-            self.revise();
+            self.revise()?;
             return Ok(Retreat::Planned);
         }
         Ok(Retreat::Impossible(hindrance))

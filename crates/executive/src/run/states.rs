@@ -21,7 +21,7 @@ use crate::world_state::Lack;
 
 /// A traverse has driven so many meters more than its path has.
 pub(super) struct Odometer {
-    at: Time,
+    pub(super) at: Time,
     pub(super) occurrence: OccurrenceId,
     extra_m: Rational,
 }
@@ -54,15 +54,16 @@ impl Run<'_> {
         }
     }
 
-    /// Takes in how far a traverse that starts now will have driven, and when.
+    /// Takes in how far a traverse that has started at a time will have driven, and when.
     pub(super) fn expect_meters(
         &mut self,
         occurrence: OccurrenceId,
+        started: Time,
         execution: &ActivityExecution,
     ) -> Result<(), Overflow> {
         self.counted_margins.insert(occurrence, execution.counted_margins);
         for &(after, extra_m) in &execution.extra_meters {
-            let at = self.now.checked_add(after).ok_or(Overflow)?;
+            let at = started.checked_add(after).ok_or(Overflow)?;
             let place = self.odometers.partition_point(|before| before.at <= at);
             self.odometers.insert(place, Odometer { at, occurrence, extra_m });
         }

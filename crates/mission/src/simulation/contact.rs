@@ -12,18 +12,27 @@ use tpn::{Network, OccurrenceId};
 use super::ticks_per_unit;
 use crate::traverse;
 
+/// Two vehicles that touch in what was driven.
+pub(super) struct Touching {
+    pub(super) contact: Contact,
+    /// When, in mission units.
+    pub(super) time: f64,
+    pub(super) vehicles: [u32; 2],
+}
+
 /// The first contact of any two vehicles in what was driven. A vehicle that does not drive stands where it is.
 pub(super) fn first_contact(
     program: &Program,
     network: &Network,
     drives: &[SimulatedDrive],
-) -> Option<Contact> {
+) -> Option<Touching> {
     let (touch, pair) = first_touch(program, &tracks(program, network, drives))?;
     let under_way = drives.iter().rev().find(|drive| {
         let is_in_it = drive.vehicles.iter().any(|it| pair.contains(&it.vehicle));
         is_in_it && drive.start.to_f64() <= touch.time_s
     })?;
-    contact(program, network, under_way.occurrence, (touch, pair))
+    let contact = contact(program, network, under_way.occurrence, (touch, pair))?;
+    Some(Touching { contact, time: touch.time_s, vehicles: pair })
 }
 
 /// The first contact of any two vehicles in a run whose traverses are not driven: vehicles keep an even pace along the

@@ -17,7 +17,7 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
-use super::{Course, DriveFrame, Driving, SimulatedVehicle};
+use super::{Before, Course, DriveFrame, Driving, SimulatedVehicle};
 
 /// Frames are kept this far apart, in meters and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -53,6 +53,35 @@ const HEARD_M: f64 = 1.5;
 /// Meters beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
 
+/// A vehicle that is not part of a traverse.
+struct Neighbor<'a> {
+    /// Where it stands before it first moves.
+    stands_m: Point2<f64>,
+    /// What it drives while the traverse is under way, as far as that is known, in order.
+    moves: Vec<&'a SimulatedVehicle>,
+    radius_m: f64,
+}
+
+impl Neighbor<'_> {
+    /// What it drives at a time, or drove last.
+    fn last_move(&self, now: f64) -> Option<&SimulatedVehicle> {
+        let has_begun = |it: &&&SimulatedVehicle| it.frames.first().is_some_and(|first| first.time <= now);
+        self.moves.iter().rev().find(has_begun).copied()
+    }
+
+    /// Where it stands at a time, in mission units, if it does.
+    fn standing_m(&self, now: f64) -> Option<Point2<f64>> {
+        let Some(last_move) = self.last_move(now) else { return Some(self.stands_m) };
+        let last = last_move.frames.last()?;
+        (last.time <= now).then_some(last.position_m)
+    }
+
+    /// Where it is at a time, in mission units.
+    fn place_m(&self, now: f64) -> Point2<f64> {
+        self.last_move(now).and_then(|last_move| last_move.place_m(now)).unwrap_or(self.stands_m)
+    }
+}
+
 /// One traverse under way.
 pub(super) struct Trip<'a> {
     course: &'a Course,
@@ -61,14 +90,18 @@ pub(super) struct Trip<'a> {
     models: Vec<VehicleModel>,
     maps: Vec<ConfigurationSpace>,
     pub(super) convoy: Convoy,
+    /// What its sensors can see, whoever else is there.
+    still: FineWorld,
+    /// The same with the vehicles that stand there.
     world: FineWorld,
     /// What is still to happen to the world, with seconds from the start of the traverse, and whether only
     /// sonars hear it; the earliest last.
     coming: Vec<(f64, Obstacle, bool)>,
     /// Slow spells: the vehicle, the share of its speed, and from when to when in seconds.
     slow: Vec<(usize, f64, [f64; 2])>,
-    /// Other vehicles under way: where they are over time, in mission units, and their radii.
-    others: Vec<(&'a SimulatedVehicle, f64)>,
+    neighbors: Vec<Neighbor<'a>>,
+    /// Where each of them stands, if it does: to be seen, but not to be put on a map.
+    standing: Vec<Option<Point2<f64>>>,
     start: f64,
     unit_s: f64,
     /// Least and greatest speed of the traverse.
@@ -92,8 +125,6 @@ pub(super) struct Trip<'a> {
     /// What others had seen when it started, and what is seen on the way.
     known: Vec<Point2<f64>>,
     pub(super) seen: SeenMap,
-    /// Places where vehicles stand, with radii: to be seen, but not to be put on a map.
-    standing: Vec<(Point2<f64>, f64)>,
     /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
 }
@@ -105,7 +136,7 @@ impl<'a> Trip<'a> {
         course: &'a Course,
         tracks: Vec<Path>,
         network: &Network,
-        start: Time,
+        (start, before): (Time, &Before),
     ) -> Self {
         let world = &driving.problem.program.world;
         let unit_s = driving.problem.program.options.time_unit.seconds() as f64;
@@ -122,7 +153,7 @@ impl<'a> Trip<'a> {
             .zip(&models)
             .map(|((vehicle, track), model)| {
                 let mut points = track.points_m;
-                let stand = driving
+                let stand = before
                     .stand
                     .get(vehicle)
                     .filter(|(place, _)| points.first().is_some_and(|&first| distance(place, &first) < 20.0));
@@ -173,22 +204,18 @@ impl<'a> Trip<'a> {
         for closed in closed_to(world, &course.route.vehicles, activity).filter(|it| !it.is_solid()) {
             fine.add(&snapshot::ground::obstacle(&closed.shape));
         }
-        let (mut others, mut standing) = (Vec::new(), Vec::new());
-        for (vehicle, place) in driving.standing_m() {
-            if drive.vehicles.contains(&vehicle) || flies(vehicle) != is_flight {
-                continue;
-            }
-            let radius_m = vehicle::radius_m(world, vehicle);
-            let moving =
-                driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
-            let moving = moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start));
-            if let Some(moving) = moving {
-                others.push((moving, radius_m));
-            } else {
-                standing.push((place, radius_m));
-                fine.add(&Obstacle::Circle { center_m: place, radius_m });
-            }
-        }
+        let others = driving
+            .standing_m(&before.stand)
+            .filter(|(vehicle, _)| !drive.vehicles.contains(vehicle) && flies(*vehicle) == is_flight);
+        let neighbor = |(vehicle, stands_m): (u32, Point2<f64>)| {
+            let drives = driving.drives.iter().flat_map(|drive| &drive.vehicles);
+            let is_coming = |it: &&SimulatedVehicle| {
+                it.vehicle == vehicle && it.frames.last().is_some_and(|last| last.time > start)
+            };
+            let moves = drives.filter(is_coming).collect();
+            Neighbor { stands_m, moves, radius_m: vehicle::radius_m(world, vehicle) }
+        };
+        let neighbors = others.map(neighbor).collect();
         let length_m = drive.path.length_m();
         let mut along_m = 0.0;
         let mut passed_m: Vec<f64> = Vec::new();
@@ -213,12 +240,14 @@ impl<'a> Trip<'a> {
             wanted_s: wanted_units(network, drive.occurrence, &driving.chosen) * unit_s,
             frames: vec![Vec::new(); count],
             steps_since_frame: vec![0; count],
-            world: fine,
+            world: fine.clone(),
+            still: fine,
             course,
             models,
             coming,
             slow,
-            others,
+            neighbors,
+            standing: Vec::new(),
             start,
             unit_s,
             speeds_mps,
@@ -229,9 +258,8 @@ impl<'a> Trip<'a> {
             extra_meters: Vec::new(),
             arrived_m: None,
             least_clearance_m: f64::INFINITY,
-            known: if is_flight { Vec::new() } else { driving.seen.known_at(start) },
+            known: if is_flight { Vec::new() } else { before.seen_m.clone() },
             seen: SeenMap::default(),
-            standing,
             leg_ends_m: course.leg_ends_m.clone(),
         }
     }
@@ -259,16 +287,8 @@ impl<'a> Trip<'a> {
             if time_s > most_s {
                 return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MAX_TIMES));
             }
-            let mut has_changed = false;
-            while let Some((_, obstacle, low)) = self.coming.pop_if(|(at_s, ..)| *at_s <= time_s) {
-                if low {
-                    self.world.add_low(&obstacle);
-                } else {
-                    self.world.add(&obstacle);
-                }
-                has_changed = true;
-            }
             let now = self.start + time_s / self.unit_s;
+            let has_changed = self.change_world(time_s, now);
             let others = self.others_from(now);
             let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
             let around = Surroundings { world: &self.world, has_changed, maps: &self.maps, others: &others };
@@ -290,18 +310,43 @@ impl<'a> Trip<'a> {
         Ok(())
     }
 
+    /// What has appeared by now is in the world, and vehicles that stand are where they do. Returns whether it has changed.
+    fn change_world(&mut self, time_s: f64, now: f64) -> bool {
+        let mut has_changed = false;
+        while let Some((_, obstacle, low)) = self.coming.pop_if(|(at_s, ..)| *at_s <= time_s) {
+            if low {
+                self.still.add_low(&obstacle);
+            } else {
+                self.still.add(&obstacle);
+            }
+            has_changed = true;
+        }
+        let standing: Vec<_> = self.neighbors.iter().map(|neighbor| neighbor.standing_m(now)).collect();
+        has_changed |= standing != self.standing;
+        if has_changed {
+            self.world = self.still.clone();
+            for (neighbor, center_m) in self.neighbors.iter().zip(&standing) {
+                let Some(center_m) = *center_m else { continue };
+                self.world.add(&Obstacle::Circle { center_m, radius_m: neighbor.radius_m });
+            }
+            self.standing = standing;
+        }
+        has_changed
+    }
+
     /// Where others that move are now and will be soon. What is far away does not count.
     fn others_from(&self, now: f64) -> Vec<OtherVehicle> {
         let here_m = self.convoy.state(0).position_m;
-        let other = |(vehicle, radius_m): &(&SimulatedVehicle, f64)| {
-            let place =
-                |second: u32| vehicle.at(now + f64::from(second) / self.unit_s).map(|it| it.position_m);
-            let is_near = distance(&place(0)?, &here_m) < NEAR_M;
+        let other = |neighbor: &Neighbor<'_>| {
+            if neighbor.standing_m(now).is_some() {
+                return None;
+            }
+            let place = |second: u32| neighbor.place_m(now + f64::from(second) / self.unit_s);
+            let is_near = distance(&place(0), &here_m) < NEAR_M;
             let seconds = if is_near { FORESEEN_S } else { 0 };
-            let places_m = (0..=seconds).filter_map(place).collect();
-            Some(OtherVehicle { places_m, radius_m: *radius_m })
+            Some(OtherVehicle { places_m: (0..=seconds).map(place).collect(), radius_m: neighbor.radius_m })
         };
-        self.others.iter().filter_map(other).collect()
+        self.neighbors.iter().filter_map(other).collect()
     }
 
     /// What the leader drives beyond its path counts soon after it is driven.
@@ -475,10 +520,9 @@ impl<'a> Trip<'a> {
         for (_, scan) in steps {
             for point in scan.points_m() {
                 let away_m = space.clearance_m(point).map(|clearance| clearance + space.radius_m());
-                let is_vehicle = self
-                    .standing
-                    .iter()
-                    .any(|(place, radius_m)| distance(place, &point) <= radius_m + KNOWN_M);
+                let is_vehicle = self.neighbors.iter().zip(&self.standing).any(|(neighbor, place)| {
+                    place.is_some_and(|place| distance(&place, &point) <= neighbor.radius_m + KNOWN_M)
+                });
                 if away_m.is_some_and(|away_m| away_m > KNOWN_M) && !is_vehicle {
                     self.seen.add(point, now);
                 }
@@ -525,9 +569,10 @@ impl<'a> Trip<'a> {
         let mut members = self.models.iter().enumerate().filter(|(index, _)| *index != vehicle);
         members.any(|(index, model)| {
             distance(&self.convoy.state(index).position_m, &here) <= own_m + model.circumradius_m
-        }) || self.others.iter().any(|(other, radius_m)| {
-            other.at(now).is_some_and(|it| distance(&it.position_m, &here) <= own_m + radius_m)
-        })
+        }) || self
+            .neighbors
+            .iter()
+            .any(|neighbor| distance(&neighbor.place_m(now), &here) <= own_m + neighbor.radius_m)
     }
 
     /// Keeps a frame of each vehicle that has moved or turned since its last one, set out or stopped, or is close to others.

@@ -116,7 +116,7 @@ fn paths_that_cross_are_put_in_an_order_where_there_is_time() {
     }
 }
 
-/// Alpha passes where Delta stands, and Delta then drives before it along the same line: Alpha does not expect it there.
+/// Alpha passes where Delta stands, and Delta then drives before it along the same line.
 const OVERTAKING: &str = "
 terrain \"tai-plain\" cell 0.6 origin (0, 0);
 location A (24, 52); location B (75, 52); location C (40, 52); location D (72, 52);
@@ -132,11 +132,22 @@ fn a_vehicle_lets_pass_the_one_that_set_out_first() {
     }
 }
 
+/// Alpha and Delta stand too near each other from the beginning.
+const TOO_NEAR: &str = "
+terrain \"tai-plain\" cell 0.6 origin (0, 0);
+location A (24, 52); location B (75, 52); location C (24.8, 52); location D (72, 52);
+vehicle Alpha : ATRV at A; vehicle Delta : ATRV at C;
+primitive Drive(r, to)[2,30] moves r speed (0.01, 0.5);
+scenario S[0,100] = { { Drive(Alpha, B) }, { delay[0.6,0.6]; Drive(Delta, D) } }";
+
 #[test]
 fn vehicles_that_touch_end_the_run() {
     let mut touched = 0;
-    for seed in 0..10 {
-        let execution = executed(OVERTAKING, seed);
+    for (source, seed) in [(OVERTAKING, 0..10), (TOO_NEAR, 0..2)]
+        .into_iter()
+        .flat_map(|(source, seeds)| seeds.map(move |seed| (source, seed)))
+    {
+        let execution = executed(source, seed);
         let place = |vehicle: u32, time: f64| {
             let drives = execution.drives.iter().flat_map(|drive| &drive.vehicles);
             drives.filter(|it| it.vehicle == vehicle).find_map(|it| Some(it.at(time)?.position_m))

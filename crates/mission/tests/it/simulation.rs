@@ -280,3 +280,21 @@ fn drivers_stay_out_of_areas_that_are_closed_to_them_and_cross_others() {
     assert!(nearest_m(&around) > ATRV_M, "{}", nearest_m(&around));
     assert!(nearest_m(&run(&mission(" for Blimp"), &[])) < -9.0, "nothing stands there");
 }
+
+/// Two rovers that drive to one place over ground with rocks that their map does not show.
+const TO_ONE_PLACE: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+location P0 (17, 27); location P1 (62, 26); location P2 (30, 67); location P4 (40, 49);
+vehicle V0 : ATRV-Jr at P0; vehicle V1 : ATRV-Jr at P1;
+primitive Drive(r, to)[0,200] moves r speed (0.005, 0.3);
+scenario S[0,600] = { Drive(V0, P2), Drive(V1, P2) }";
+
+/// Each is driven when it starts, without what the other one will do: one that leaves its path for a rock must not come to where
+/// the other one has parked meanwhile.
+#[test]
+fn vehicles_that_leave_their_paths_do_not_touch_what_has_parked_meanwhile() {
+    let mission = Mission::read(TO_ONE_PLACE);
+    for seed in 0..12 {
+        let execution = mission.executed(seed, &[]);
+        assert!(violations(&execution).is_empty(), "seed {seed}: {:?}", violations(&execution));
+    }
+}
