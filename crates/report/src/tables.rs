@@ -106,7 +106,7 @@ fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
     (rows, more)
 }
 
-/// Which rows there is room for: what has failed or is for attention before the rest, and what has passed last. Rows that
+/// Which rows there is room for: what has failed or needs attention before the rest, and what has passed last. Rows that
 /// go on with the one before, which have nothing in their first cell, stay with it. `size` is what rows take of the room.
 fn chosen(rows: &[Vec<String>], mut room: usize, size: impl Fn(&[Vec<String>]) -> usize) -> Vec<bool> {
     let begins: Vec<usize> = (0..rows.len())

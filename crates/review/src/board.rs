@@ -111,7 +111,7 @@ impl<'a> Accepted<'a> {
         self.0.get(&LineKey::new(section, line)).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// Whether an approval has signed an acknowledgment or a waiver that still holds for each line for attention that
+    /// Whether an approval has signed an acknowledgment or a waiver that still holds for each item that needs attention that
     /// someone has accepted. Without a review the lines are not known: all that the approval has signed has to hold.
     fn hold_for(&self, approval: &Entry, review: Option<&Review>) -> bool {
         let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
@@ -143,7 +143,7 @@ pub struct Standing<'a> {
     pub lapsed: Option<(&'a Entry, &'static str)>,
     /// Comments that are not resolved, oldest first.
     pub open_comments: Vec<&'a Entry>,
-    /// Lines for attention that no one has acknowledged, and that no waiver in force is about.
+    /// Items that need attention that no one has acknowledged, and that no waiver in force is about.
     pub unacknowledged: Vec<(Section, &'a Line)>,
     /// The digests of the acknowledgments and waivers that an approval of the present plan relies on, and signs.
     pub relied_on: Vec<String>,
@@ -300,11 +300,11 @@ impl Standing<'_> {
         let missing = self.missing.map(str::to_owned);
         missing
             .into_iter()
-            .chain(some(self.failed, "line has failed", "lines have failed"))
+            .chain(some(self.failed, "item has failed", "items have failed"))
             .chain(some(
                 self.unacknowledged.len(),
-                "line for attention is not acknowledged",
-                "lines for attention are not acknowledged",
+                "item that needs attention is not acknowledged",
+                "items that need attention are not acknowledged",
             ))
             .chain(some(self.open_comments.len(), "comment is open", "comments are open"))
             .collect()

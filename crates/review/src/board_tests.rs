@@ -125,7 +125,7 @@ fn open_comments_stand_in_the_way_until_they_are_resolved() {
 }
 
 #[test]
-fn each_line_for_attention_is_acknowledged_as_it_is() {
+fn each_item_that_needs_attention_is_acknowledged_as_it_is() {
     let mut table = Table::new(SCENARIO, &FlightRules::default());
     let lines: Vec<(Section, LineKey)> = table.standing(|standing| {
         standing
@@ -140,7 +140,7 @@ fn each_line_for_attention_is_acknowledged_as_it_is() {
     for (index, (_, line)) in lines.iter().enumerate() {
         let left = lines.len() - index;
         let blockers = table.blockers().join(", ");
-        assert!(blockers.starts_with(&format!("{left} line")), "{blockers}");
+        assert!(blockers.starts_with(&format!("{left} item")), "{blockers}");
         last =
             table.say("Ada", "01", Act::Acknowledge { line: line.clone(), text: "As planned.".to_owned() });
     }

@@ -534,7 +534,7 @@ fn acknowledgments_and_rules_of_another_mission_count_for_nothing() {
     assert_eq!((unacknowledged(&mine), mine.record.rules()), (open, &rules));
 }
 
-/// The lines for attention that no one has acknowledged.
+/// The items that need attention that no one has acknowledged.
 fn unacknowledged(board: &Board) -> Vec<LineKey> {
     let mut review = board.review.clone();
     review.judge(board.record.rules(), None);

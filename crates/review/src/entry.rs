@@ -131,13 +131,13 @@ pub enum Act {
     Resolve { of: String, text: String },
     /// Opened a resolved comment again.
     Reopen { of: String, text: String },
-    /// Acknowledged a line for attention.
+    /// Acknowledged an item that needs attention.
     Acknowledge {
         line: LineKey,
         /// Why it may be so.
         text: String,
     },
-    /// Waived a line for attention until some day.
+    /// Waived an item that needs attention until some day.
     Waive {
         line: LineKey,
         /// Why it may be so until then.
@@ -230,7 +230,7 @@ pub struct Subject {
     pub seed: u64,
     /// The flight rules that it was held against.
     pub rules: FlightRules,
-    /// How many lines of the review had passed, were for attention, and had failed.
+    /// How many lines of the review had passed, needed attention, and had failed.
     pub counts: [usize; 3],
     /// The lines of the checklist, those of events and their windows excepted.
     #[serde(default)]

@@ -298,7 +298,7 @@ fn every_line_that_passed_has_a_case_that_makes_it_fail() {
                     "  {}: {}\n    {}: {case}\n",
                     section.title(),
                     line.text,
-                    if line.status == Status::Passed { "fails by" } else { "is for attention by" }
+                    if line.status == Status::Passed { "fails by" } else { "needs attention by" }
                 ));
             }
         }

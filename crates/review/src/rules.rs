@@ -41,7 +41,7 @@ pub struct FlightRules {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SuccessRate {
-    /// Less than this is for attention.
+    /// Less than this needs attention.
     pub wanted: f64,
     /// Less than this is a failure.
     pub least: f64,

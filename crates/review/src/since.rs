@@ -53,7 +53,7 @@ impl LineChange {
         self.after.as_ref().or(self.before.as_ref()).map(|line| line.section)
     }
 
-    /// In words: `new`, `gone`, `was passed, is for attention`.
+    /// In words: `new`, `gone`, `was passed, needs attention`.
     pub fn sentence(&self) -> String {
         match (&self.before, &self.after) {
             (Some(before), Some(after)) if before.status == after.status => {

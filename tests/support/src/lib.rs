@@ -80,7 +80,7 @@ impl App {
         self.run(Command::Review(ReviewCommand::SignAs(name.to_owned())));
     }
 
-    /// Acknowledges every line for attention of the review, one by one.
+    /// Acknowledges every item that needs attention of the review, one by one.
     pub fn acknowledge_all(&mut self, name: &str) {
         if self.session.state().keys.ring().own_named(name).is_none() {
             self.sign_as(name);

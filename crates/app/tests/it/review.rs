@@ -181,7 +181,7 @@ fn a_review_that_is_run_again_is_of_the_present_text_and_the_old_one_is_found_ag
     assert_eq!(review(&app), before, "nothing has to be reviewed twice");
 }
 
-/// Acknowledges every line for attention, as a host page does.
+/// Acknowledges every item that needs attention, as a host page does.
 fn acknowledge_all(app: &mut App) {
     sign_as(app, "Ada");
     let items = review(app)["items"].as_array().expect("lines").clone();
@@ -206,7 +206,7 @@ fn approve(app: &mut App, name: &str) {
 fn an_approval_is_for_one_content_and_stays_with_it() {
     let mut app = reviewing();
     create_key(&mut app, "Ada Lovelace");
-    // Each line for attention is acknowledged below itself, with the keyboard.
+    // Each item that needs attention is acknowledged below itself, with the keyboard.
     let left = |app: &App| {
         let items = review(app)["items"].as_array().expect("lines").clone();
         items.iter().filter(|it| it["status"] == "attention" && it["acknowledged"].is_null()).count()

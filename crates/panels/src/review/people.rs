@@ -48,9 +48,9 @@ struct Answer {
 /// What words are about.
 #[derive(Clone, PartialEq)]
 enum About {
-    /// A line for attention, which is acknowledged.
+    /// An item that needs attention, which is acknowledged.
     Line(LineKey),
-    /// A line for attention, which is waived.
+    /// An item that needs attention, which is waived.
     Waived(LineKey),
     /// A comment, which is resolved.
     Resolved(String),
@@ -157,7 +157,7 @@ impl People {
         self.me.as_ref().is_some_and(|(_, key)| entry.key.as_ref() == Some(key))
     }
 
-    /// Below a line for attention: who acknowledged it, or how to.
+    /// Below an item that needs attention: who acknowledged it, or how to.
     pub(super) fn acknowledgment(
         &mut self,
         ui: &mut Ui,

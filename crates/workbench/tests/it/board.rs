@@ -110,7 +110,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     app.dispatch("review.resolve", &resolve);
     assert!(refused(&mut app, "review.resolve", &resolve).contains("already resolved"));
     assert_eq!(app.json()["review"]["comments"][0]["open"], false);
-    // Lines for attention are acknowledged with a reason, each.
+    // Items that need attention are acknowledged with a reason, each.
     let items = app.json()["review"]["items"].as_array().expect("a list").clone();
     let index = items.iter().position(|item| item["status"] == "attention").expect("a line");
     let silent = json!({ "name": "Ada", "item": index, "text": " " });
