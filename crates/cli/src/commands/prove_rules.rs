@@ -47,8 +47,9 @@ pub(super) fn run(call: &Call<'_>, deadline: Deadline) -> anyhow::Result<ExitCod
         let found = mission.core.prove_rule(&evaluated, &rule, call.alternatives, &mut || deadline.is_over());
         proven.push((rule, found));
     }
-    let is = |open: bool| proven.iter().any(|(_, found)| is_open(&found.verdict) == open && !is_kept(found));
-    let (is_broken, is_undecided) = (is(false), is(true));
+    let verdicts = || proven.iter().map(|(_, found)| &found.verdict);
+    let is_broken = verdicts().any(|verdict| !verdict.is_kept() && !verdict.is_open());
+    let is_undecided = verdicts().any(Verdict::is_open);
     let counterexample = proven.iter().find_map(|(_, found)| found.verdict.counterexample());
     if let (Some(path), Some(found)) = (call.output, counterexample) {
         let body = json!({ "plans": [found.plan], "schedule": found.script.schedule });
@@ -78,15 +79,6 @@ pub(super) fn run(call: &Call<'_>, deadline: Deadline) -> anyhow::Result<ExitCod
     }))
 }
 
-const fn is_open(verdict: &Verdict) -> bool {
-    matches!(verdict, Verdict::Open(_))
-}
-
-/// Whether every plan keeps the rule.
-const fn is_kept(proven: &Proven) -> bool {
-    matches!(proven.verdict, Verdict::Holds | Verdict::NeverApplies)
-}
-
 fn rule_json(rule: &MissionRule, proven: &Proven) -> Value {
     let mut told = json!({
         "name": rule.name,
@@ -112,9 +104,9 @@ fn text(proven: &[(MissionRule, Proven)]) -> String {
     let tried = count(usize::try_from(alternatives).unwrap_or(usize::MAX), "alternative");
     let mut out = format!("Searched {tried} for plans that violate a rule.\n");
     for (rule, found) in proven {
-        let word = if is_open(&found.verdict) { "open" } else { found.verdict.name() };
+        let word = if found.verdict.is_open() { "open" } else { found.verdict.name() };
         out.push_str(&format!("{word:<13}  {}: {}\n", rule.name, rule.rule));
-        if found.verdict != Verdict::Holds && found.verdict != Verdict::NeverApplies {
+        if !found.verdict.is_kept() {
             out.push_str(&format!("  {}\n", found.verdict.sentence()));
         }
         out.extend(found.verdict.counterexample().map(counterexample_text));

@@ -109,8 +109,10 @@ impl RuleProofState {
         let content_hash = running.content_hash.clone();
         match proven {
             Ok(proven) => {
-                let is_open = matches!(proven.verdict, Verdict::Open(_));
-                if is_open && proven.alternatives >= alternatives && alternatives < ALTERNATIVES {
+                if proven.verdict.is_open()
+                    && proven.alternatives >= alternatives
+                    && alternatives < ALTERNATIVES
+                {
                     running.alternatives = alternatives * FACTOR;
                 } else {
                     running.alternatives = FIRST_ALTERNATIVES;
@@ -136,12 +138,15 @@ impl RuleProofState {
     fn summary(&self, content_hash: &str) -> String {
         let all: Vec<&Verdict> = self.of_content(content_hash).map(|proven| &proven.verdict).collect();
         let count = |is: fn(&Verdict) -> bool| all.iter().filter(|it| is(it)).count();
-        let kept = count(|it| matches!(it, Verdict::Holds | Verdict::NeverApplies));
-        let broken = count(|it| it.counterexample().is_some());
-        let open = all.len() - kept - broken;
+        let kept = count(Verdict::is_kept);
         let rules = if all.len() == 1 { "rule" } else { "rules" };
-        let undecided = if open > 0 { format!(", {open} not decided") } else { String::new() };
-        format!("{kept} of {} {rules} hold in every plan{undecided}", all.len())
+        let others = [
+            (count(Verdict::is_open), "not decided"),
+            (count(|it| matches!(it, Verdict::Unreadable { .. })), "with an error"),
+        ];
+        let others = others.iter().filter(|(count, _)| *count > 0);
+        let others: String = others.map(|(count, what)| format!(", {count} {what}")).collect();
+        format!("{kept} of {} {rules} hold in every plan{others}", all.len())
     }
 
     /// A rule that is proven again replaces what was found of it before.
@@ -200,6 +205,25 @@ mod tests {
         assert_eq!(state.summary("hash"), "2 of 2 rules hold in every plan");
         assert_eq!(state.of_rule("hash", "A").map(|it| &it.verdict), Some(&Verdict::Holds));
         assert_eq!(state.of_rule("other", "A"), None);
+    }
+
+    #[test]
+    fn rules_with_errors_are_not_called_undecided() {
+        let (mut state, mut window) = (RuleProofState::default(), Window::default());
+        let verdicts = [
+            Verdict::Holds,
+            Verdict::Open("the limit was reached".into()),
+            Verdict::Unreadable { column: 3, message: "expected a state".into() },
+        ];
+        let rules = ["A", "B", "C"];
+        state.start(Update::new(1, ""), "hash".into(), rules.map(rule).to_vec(), &mut window);
+        for (rule, verdict) in rules.into_iter().zip(verdicts) {
+            for alternatives in [2_000, 20_000, 200_000] {
+                let update = Some(Update::new(1, ""));
+                state.take(answer(rule, alternatives, verdict.clone()), update, &mut window);
+            }
+        }
+        assert_eq!(state.summary("hash"), "1 of 3 rules hold in every plan, 1 not decided, 1 with an error");
     }
 
     #[test]

@@ -108,6 +108,16 @@ impl Verdict {
         }
     }
 
+    /// Whether every plan keeps the rule.
+    pub const fn is_kept(&self) -> bool {
+        matches!(self, Self::Holds | Self::NeverApplies)
+    }
+
+    /// Whether nothing is known of some plans.
+    pub const fn is_open(&self) -> bool {
+        matches!(self, Self::Open(_))
+    }
+
     /// The plan that does not keep the rule.
     pub fn counterexample(&self) -> Option<&Counterexample> {
         match self {
