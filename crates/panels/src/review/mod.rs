@@ -208,7 +208,13 @@ fn section_note(statuses: &[Status], section: Section) -> String {
         .into_iter()
         .filter_map(|status| {
             let count = statuses.iter().filter(|it| **it == status).count();
-            (count > 0).then(|| format!("{count} {}", status.name()))
+            let words = match status {
+                Status::Attention if count == 1 => "needs attention",
+                Status::Attention => "need attention",
+                Status::Information => "for information",
+                Status::Failed | Status::Passed => status.name(),
+            };
+            (count > 0).then(|| format!("{count} {words}"))
         })
         .collect::<Vec<_>>()
         .join(", ")

@@ -12,6 +12,9 @@ use crate::{Context, inline_code};
 
 /// How far the text of lines is from the left.
 pub(super) const INDENT: f32 = 26.0;
+/// Room for the line number on the right, and for all that is there, at least.
+const PLACE: f32 = 54.0;
+const LEAST_META: f32 = 118.0;
 /// Narrower rows put what is on the right below the text.
 const NARROW: f32 = 430.0;
 
@@ -41,8 +44,10 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let look = row.status.map(|status| status_look(tokens, status, is_stale(context)));
     let word = look.map_or("", |(_, word, _)| word);
     let is_narrow = width < NARROW;
-    let meta_width = if is_narrow { 0.0 } else { 118.0 };
     let color = if row.is_muted { tokens.text_muted } else { tokens.text };
+    let word_color = look.map_or(tokens.text_muted, |(_, _, color)| color);
+    let word_galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(word.to_owned(), small.clone(), word_color));
+    let meta_width = if is_narrow { 0.0 } else { (PLACE + word_galley.size().x).max(LEAST_META) };
     let wrap = (width - left - space::M - meta_width).max(60.0);
     let mut job = inline_code::job(row.text, &body, color, wrap);
     if !row.criterion.is_empty() {
@@ -68,17 +73,15 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let text_bottom = text_at.y + galley.size().y;
     painter.galley(text_at, galley, color);
     let muted = tokens.text_muted;
-    let word_color = look.map_or(muted, |(_, _, color)| color);
     if is_narrow {
         let at = Pos2::new(text_at.x, text_bottom + 1.0);
-        let drawn = painter.text(at, Align2::LEFT_TOP, word, small.clone(), word_color);
-        let gap = if word.is_empty() { 0.0 } else { 10.0 };
-        painter.text(drawn.right_top() + egui::vec2(gap, 0.0), Align2::LEFT_TOP, row.place, small, muted);
+        let gap = if word.is_empty() { 0.0 } else { word_galley.size().x + 10.0 };
+        painter.galley(at, word_galley, word_color);
+        painter.text(at + egui::vec2(gap, 0.0), Align2::LEFT_TOP, row.place, small, muted);
     } else {
         let right = rect.right_top() + egui::vec2(-space::M, 5.0);
-        painter.text(right, Align2::RIGHT_TOP, row.place, small.clone(), muted);
-        let word_at = right + egui::vec2(-54.0, 0.0);
-        painter.text(word_at, Align2::RIGHT_TOP, word, small, word_color);
+        painter.text(right, Align2::RIGHT_TOP, row.place, small, muted);
+        painter.galley(right - egui::vec2(PLACE + word_galley.size().x, 0.0), word_galley, word_color);
     }
     response
 }
