@@ -131,7 +131,11 @@ impl ReviewPanel {
         if lines.is_empty() {
             row::muted(ui, list.context, list.review.nothing(section));
             if let Some(settled) = list.review.settled(section) {
-                contradict::of_line(ui, list.context, list.review, (section, &settled), commands);
+                let of_line = (section, &settled);
+                ui.horizontal(|ui| {
+                    ui.add_space(row::INDENT);
+                    ui.vertical(|ui| contradict::of_line(ui, list.context, list.review, of_line, commands));
+                });
             }
             return;
         }
