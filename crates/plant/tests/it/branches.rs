@@ -59,6 +59,13 @@ fn trajectories_end_where_exact_updates_of_their_states_end() {
                 let shares: Vec<bool> = shares.map(|(_, next)| next.contains_key(&state)).collect();
                 let from = branch.from.expect("every state comes from one");
                 assert!(shares[from], "seed {seed} step {step}");
+                // It comes from there most likely.
+                let joint = |from: usize| {
+                    let share = next[from].get(&state).map(|(share, _)| share.clone()).unwrap_or_default();
+                    before[from].1.exact().expect("nothing is dropped") * share
+                };
+                let most = (0..shares.len()).map(joint).max().expect("a state");
+                assert_eq!(joint(from), most, "seed {seed} step {step}");
                 assert_eq!(branch.others + 1, shares.iter().filter(|can| **can).count(), "seed {seed}");
                 kept += 1;
             }
@@ -75,6 +82,9 @@ fn trajectories_end_where_exact_updates_of_their_states_end() {
                 alone += usize::from(is_alone);
                 ended += 1;
             }
+            let shares: Vec<&Interval> =
+                found.ruled_out.iter().filter_map(|one| one.probability.as_ref()).collect();
+            assert!(shares.is_sorted_by(|left, right| left.high >= right.high), "seed {seed} step {step}");
             // All that ended is told of, as far as there is room.
             let all = next.iter().take(6).flat_map(BTreeMap::values).filter(|(_, is_seen)| !is_seen).count();
             assert_eq!(found.ruled_out.len(), all.min(6), "seed {seed} step {step}");
