@@ -477,6 +477,17 @@ fn a_video_is_of_the_terrain_from_the_start_of_the_run_to_its_end() {
 }
 
 #[test]
+fn a_video_ends_when_another_mission_is_opened() {
+    let mut app = above();
+    dispatch(&mut app, "terrain.video", &json!(null));
+    app.harness.state_mut().open("enroute").expect("an example");
+    app.settle();
+    assert_eq!(app.json()["terrain"]["recording"], false);
+    let saved: Vec<String> = app.world.saved.borrow().iter().map(|(name, _)| name.clone()).collect();
+    assert_eq!(saved, ["test.webm"]);
+}
+
+#[test]
 fn where_there_is_no_recorder_the_command_says_so() {
     let mut app = above();
     app.world.cannot_film.set(true);

@@ -24,6 +24,7 @@ impl AppState {
 
     /// Opens a text under a name: what belongs to the one before goes.
     pub(super) fn open(&mut self, name: SmolStr, source: &str) {
+        self.end_film();
         self.document.open(source);
         self.missions_opened += 1;
         self.editor.popup = None;
