@@ -780,7 +780,15 @@ fn found_legs(
     if legs.as_ref().is_ok_and(does_not_fit) {
         legs = paths.legs(route, &space, problem.seed, Preference::Shortest);
     }
-    legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason })
+    let legs = legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason })?;
+    let unit_seconds = problem.program.options.time_unit.seconds();
+    let path = traverse_path(route, &legs, map);
+    match path.map(|path| tpn::path::segment_bounds(&path, unit_seconds)) {
+        Some(Err(error)) => {
+            Err(Undrivable { occurrence: route.occurrence, leg: 0, reason: format!("because {error}") })
+        }
+        _ => Ok(legs),
+    }
 }
 
 /// Where the vehicles of a route can be.
@@ -813,22 +821,21 @@ pub(crate) fn legs(
 /// The program's network with the paths inserted, or blocked where a traverse can't be driven.
 pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -> Network {
     let map = problem.ground.map(|(_, map)| map);
-    let paths: Vec<TraversePath> = inserted
-        .values()
-        .filter_map(|traverse| traverse_path(&traverse.route, traverse.legs.as_ref().ok()?, map?))
-        .collect();
     let unit_seconds = problem.program.options.time_unit.seconds();
-    // A path that has no exact duration is not a reason to give up the plan: the traverse keeps its own bounds.
-    let mut network = tpn::path::insert_paths(problem.network, &paths, unit_seconds)
-        .unwrap_or_else(|_| problem.network.as_ref().clone());
-    for (&occurrence, traverse) in inserted {
-        match &traverse.legs {
-            Ok(legs) => {
-                let length_m = snapshot::joined(legs).length_m();
-                count_meters(&mut network, &traverse.route, length_m, &problem.program.world);
-            }
-            Err(_) => block(&mut network, occurrence),
+    let mut network = problem.network.as_ref().clone();
+    for (&occurrence, Inserted { route, legs, .. }) in inserted {
+        let Ok(legs) = legs else {
+            block(&mut network, occurrence);
+            continue;
+        };
+        let path = map.and_then(|map| traverse_path(route, legs, map));
+        let outcome = path.map_or(Ok(()), |path| tpn::path::insert_path(&mut network, &path, unit_seconds));
+        if outcome.is_err() {
+            // Nothing is known of how long it takes.
+            block(&mut network, occurrence);
+            continue;
         }
+        count_meters(&mut network, route, snapshot::joined(legs).length_m(), &problem.program.world);
     }
     match problem.facts {
         Some(facts) => facts.apply(&network, problem.network.nodes.len()),

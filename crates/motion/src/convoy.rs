@@ -36,6 +36,7 @@ struct Stall {
 #[derive(Clone, Debug)]
 struct Member {
     driver: Driver,
+    flies: bool,
     /// The length of the path that it set out with, in meters: what the others expect it to drive.
     planned_m: f64,
     has_arrived: bool,
@@ -77,13 +78,17 @@ pub struct ConvoyMember {
     pub heading_rad: f64,
     /// How it drives.
     pub settings: DriverSettings,
+    /// Whether it is above what drives.
+    pub flies: bool,
 }
 
 /// What the surroundings of a step are.
 #[derive(Clone, Copy, Debug)]
 pub struct Surroundings<'a> {
-    /// What range sensors see.
+    /// What range sensors see on the ground.
     pub world: &'a FineWorld,
+    /// What those see that fly.
+    pub air: &'a FineWorld,
     /// Whether the world has changed since the last step.
     pub has_changed: bool,
     /// For each vehicle, the map that keeps it off steep ground.
@@ -99,6 +104,8 @@ pub struct OtherVehicle {
     pub places_m: Vec<Point2<f64>>,
     /// Of the disc around its body, in meters.
     pub radius_m: f64,
+    /// Whether it is above what drives.
+    pub flies: bool,
 }
 
 /// A vehicle keeps so far from where another one will be, in meters.
@@ -134,11 +141,11 @@ impl Convoy {
         let members = members
             .into_iter()
             .enumerate()
-            .map(|(index, ConvoyMember { path, heading_rad, settings })| {
+            .map(|(index, ConvoyMember { path, heading_rad, settings, flies })| {
                 let settings = DriverSettings { step_s, ..settings };
                 let driver = Driver::new(path, heading_rad, settings, seed.wrapping_add(index as u64));
                 let planned_m = driver.length_m();
-                Member { driver, planned_m, has_arrived: false, passes_until_m: 0.0, near: None }
+                Member { driver, flies, planned_m, has_arrived: false, passes_until_m: 0.0, near: None }
             })
             .collect();
         let stall = Stall { remaining_m: f64::INFINITY, commanded_m: 0.0, count: 0 };
@@ -231,7 +238,8 @@ impl Convoy {
             let here = member.driver.state().position_m;
             let is_at_hand = |near: &(FineWorld, Point2<f64>)| distance(&near.1, &here) <= AT_HAND_STEP_M;
             if around.has_changed || !member.near.as_ref().is_some_and(is_at_hand) {
-                member.near = Some((around.world.around(here, AT_HAND_M), here));
+                let world = if member.flies { around.air } else { around.world };
+                member.near = Some((world.around(here, AT_HAND_M), here));
             }
             let world = member.near.as_ref().map_or(around.world, |(near, _)| near);
             let (event, scan) = member.driver.step(world, around.maps.get(index));
@@ -334,27 +342,29 @@ impl Convoy {
         !self.members[vehicle].passes() && !self.members[other].has_arrived
     }
 
+    /// The others that can be in a vehicle's way, with their positions in the convoy: what flies is above what drives.
+    fn beside(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Member)> {
+        let flies = self.members[vehicle].flies;
+        let all = self.members.iter().enumerate();
+        all.filter(move |(other, member)| *other != vehicle && member.flies == flies)
+    }
+
     /// Whether a vehicle stands because another one goes around it close by, before it if both do.
     fn lets_pass(&self, vehicle: usize) -> bool {
         let own = &self.members[vehicle];
         let radius_m = own.driver.settings().radius_m + PASSING_M;
         let here = own.driver.state().position_m;
-        self.members.iter().enumerate().any(|(index, other)| {
+        self.beside(vehicle).any(|(index, other)| {
             let driver = &other.driver;
             let is_close =
                 distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m;
-            index != vehicle
-                && other.passes()
-                && !other.has_arrived
-                && (!own.passes() || index < vehicle)
-                && is_close
+            other.passes() && !other.has_arrived && (!own.passes() || index < vehicle) && is_close
         })
     }
 
     /// The vehicles of the convoy that one goes around, as place and radius in meters.
     fn to_pass(&self, vehicle: usize) -> Vec<(Point2<f64>, f64)> {
-        let others = self.members.iter().enumerate().filter(|(other, _)| *other != vehicle);
-        let passed = others.filter(|(other, _)| !self.waits_behind(vehicle, *other));
+        let passed = self.beside(vehicle).filter(|(other, _)| !self.waits_behind(vehicle, *other));
         passed.map(|(_, other)| (other.driver.state().position_m, other.driver.settings().radius_m)).collect()
     }
 
@@ -367,16 +377,16 @@ impl Convoy {
             } else {
                 radius_m + other.driver.settings().radius_m + 0.2
             };
-            (index != vehicle && self.is_ahead(vehicle, other.driver.state().position_m, reach_m))
-                .then_some(index)
+            self.is_ahead(vehicle, other.driver.state().position_m, reach_m).then_some(index)
         };
-        self.members.iter().enumerate().filter_map(is_in_its_way).collect()
+        self.beside(vehicle).filter_map(is_in_its_way).collect()
     }
 
     /// Whether others that move are close in front of a vehicle, or will soon be where it drives to.
     fn is_held_by(&self, vehicle: usize, others: &[OtherVehicle]) -> bool {
-        let radius_m = self.members[vehicle].driver.settings().radius_m;
-        others.iter().any(|other| {
+        let Member { driver, flies, .. } = &self.members[vehicle];
+        let radius_m = driver.settings().radius_m;
+        others.iter().filter(|other| other.flies == *flies).any(|other| {
             let reach_m = radius_m + other.radius_m;
             let is_at = |&place: &Point2<f64>| self.is_ahead(vehicle, place, reach_m + 0.5);
             other.places_m.first().is_some_and(is_at)

@@ -48,29 +48,6 @@ pub enum PathError {
     Speed(String, String),
 }
 
-/// Inserts `paths` into a copy of `network`. `unit_seconds` is the length of the mission's time unit.
-///
-/// Every id of `network` stays valid: nodes and arcs are only appended. Each segment takes its length divided by the
-/// speed, rounded up to the millisecond, and has no greatest duration if the rover may stop or may drive at speed zero.
-/// On a slope that is too steep for the least speed, the greatest duration is that of the slope.
-/// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
-/// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
-///
-/// Of a traverse whose duration the environment chooses, the path only raises the least duration to what it takes at
-/// the greatest speed (SPEC 13.1): when its vertices are passed is the environment's as well, and no event of the
-/// plan's. Where that is more than the greatest duration, the arc says that it cannot be driven.
-pub fn insert_paths(
-    network: &Network,
-    paths: &[TraversePath],
-    unit_seconds: i64,
-) -> Result<Network, PathError> {
-    let mut extended = network.clone();
-    for path in paths {
-        insert_path(&mut extended, path, unit_seconds)?;
-    }
-    Ok(extended)
-}
-
 /// One segment of a path with the time it takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SegmentBounds {
@@ -84,7 +61,7 @@ pub struct SegmentBounds {
     pub greatest: Bound,
 }
 
-/// The times of a path's segments in order, exactly as [`insert_paths`] puts them into a network.
+/// The times of a path's segments in order, exactly as [`insert_path`] puts them into a network.
 pub fn segment_bounds(path: &TraversePath, unit_seconds: i64) -> Result<Vec<SegmentBounds>, PathError> {
     let (least_mps, greatest_mps) = path.speed_mps;
     if !greatest_mps.is_positive() || least_mps.is_negative() || least_mps > greatest_mps {
@@ -109,7 +86,19 @@ pub fn segment_bounds(path: &TraversePath, unit_seconds: i64) -> Result<Vec<Segm
     if bounds.is_empty() { Err(PathError::Empty) } else { Ok(bounds) }
 }
 
-fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) -> Result<(), PathError> {
+/// Inserts `path` into `network`, which is as it was where that gives an error. `unit_seconds` is the length of the mission's
+/// time unit.
+///
+/// Every id of `network` stays valid: nodes and arcs are only appended. Each segment takes its length divided by the
+/// speed, rounded up to the millisecond, and has no greatest duration if the rover may stop or may drive at speed zero.
+/// On a slope that is too steep for the least speed, the greatest duration is that of the slope.
+/// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
+/// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
+///
+/// Of a traverse whose duration the environment chooses, the path only raises the least duration to what it takes at
+/// the greatest speed (SPEC 13.1): when its vertices are passed is the environment's as well, and no event of the
+/// plan's. Where that is more than the greatest duration, the arc says that it cannot be driven.
+pub fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) -> Result<(), PathError> {
     let occurrence = network.occurrences.get(path.occurrence.index()).ok_or(PathError::NoTraverse)?;
     let spanning = occurrence.arc.ok_or(PathError::NoTraverse)?;
     let (start, end, span) = (occurrence.start, occurrence.end, network.arcs[spanning.index()].span);
@@ -174,6 +163,9 @@ pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option
 /// The time for `length_m` at a speed that was itself computed, rounded up to the millisecond. Division of doubles is the
 /// same on every machine.
 fn slope_duration(length_m: f64, speed_mps: f64, unit_seconds: i64) -> Option<Time> {
+    if length_m == 0.0 {
+        return Some(Time::ZERO);
+    }
     let millis =
         Time::from_f64_up(1000.0 * length_m / speed_mps, 1).filter(|millis| !millis.is_negative())?;
     millis.checked_div(unit_seconds.checked_mul(1000)?)

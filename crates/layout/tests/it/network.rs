@@ -359,7 +359,7 @@ fn the_text_of_an_arch_slides_along_it_into_view_and_no_further() {
 
 #[test]
 fn the_path_of_a_traverse_is_strung_above_its_arc() {
-    use tpn::path::{PathLeg, TraversePath, insert_paths};
+    use tpn::path::{PathLeg, TraversePath, insert_path};
     let network = enroute();
     let traverse =
         network.occurrences.iter().position(|it| it.name == "Group-Traverse-Path#1").expect("it is there");
@@ -373,7 +373,8 @@ fn the_path_of_a_traverse_is_strung_above_its_arc() {
         speed_mps: (Rational::new(1, 10).expect("a tenth"), Rational::new(1, 2).expect("a half")),
         may_stop: false,
     };
-    let with_path = insert_paths(&network, &[path], 60).expect("the path is sound");
+    let mut with_path = network.clone();
+    insert_path(&mut with_path, &path, 60).expect("the path is sound");
     assert_eq!(with_path.nodes.len(), network.nodes.len() + 10);
     let drawing = draw(&with_path);
     assert_eq!((drawing.nodes.len(), drawing.arcs.len()), (with_path.nodes.len(), with_path.arcs.len()));

@@ -12,7 +12,7 @@ use motion::{
 };
 use nalgebra::{Point2, Vector2, distance};
 use smol_str::SmolStr;
-use terrain::{CellState, ConfigurationSpace, Obstacle, Terrain};
+use terrain::{CellState, ConfigurationSpace, Obstacle, Occupancy, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
@@ -60,6 +60,24 @@ struct Neighbor<'a> {
     /// What it drives while the traverse is under way, as far as that is known, in order.
     moves: Vec<&'a SimulatedVehicle>,
     radius_m: f64,
+    flies: bool,
+}
+
+/// What sensors can see: on the ground, and above what stands there.
+#[derive(Clone)]
+struct Layers {
+    ground: FineWorld,
+    air: FineWorld,
+}
+
+impl Layers {
+    const fn of(&self, flies: bool) -> &FineWorld {
+        if flies { &self.air } else { &self.ground }
+    }
+
+    const fn of_mut(&mut self, flies: bool) -> &mut FineWorld {
+        if flies { &mut self.air } else { &mut self.ground }
+    }
 }
 
 impl Neighbor<'_> {
@@ -90,10 +108,12 @@ pub(super) struct Trip<'a> {
     models: Vec<VehicleModel>,
     maps: Vec<ConfigurationSpace>,
     pub(super) convoy: Convoy,
+    /// Which of its vehicles fly.
+    flies: Vec<bool>,
     /// What its sensors can see, whoever else is there.
-    still: FineWorld,
+    still: Layers,
     /// The same with the vehicles that stand there.
-    world: FineWorld,
+    world: Layers,
     /// What is still to happen to the world, with seconds from the start of the traverse, and whether only
     /// sonars hear it; the earliest last.
     coming: Vec<(f64, Obstacle, bool)>,
@@ -166,18 +186,18 @@ impl<'a> Trip<'a> {
                     path: Path::new(points),
                     heading_rad: stand.map_or(libm::atan2(ahead.y, ahead.x), |&(_, heading_rad)| heading_rad),
                     settings: DriverSettings::new(limits, model.circumradius_m).at_most(speeds_mps[1]),
+                    flies: vehicle::flies(world, *vehicle),
                 }
             })
             .collect();
         let seconds = |time: Time| (time.to_f64() - start) * unit_s;
-        // What stands on the ground is below those that fly, and who flies is above those that drive.
-        let flies = |vehicle: u32| vehicle::flies(world, vehicle);
-        let is_flight = drive.vehicles.iter().all(|&vehicle| flies(vehicle));
+        let flies: Vec<bool> = drive.vehicles.iter().map(|&vehicle| vehicle::flies(world, vehicle)).collect();
+        let is_flight = flies.iter().all(|flies| *flies);
         let mut coming: Vec<(f64, Obstacle, bool)> = Vec::new();
         let mut slow = Vec::new();
         for disturbance in driving.disturbances {
             match disturbance {
-                Disturbance::Obstacle { at, x, y, radius, low } if !is_flight => {
+                Disturbance::Obstacle { at, x, y, radius, low } => {
                     coming.push((
                         seconds(*at),
                         Obstacle::Circle { center_m: Point2::new(*x, *y), radius_m: *radius },
@@ -198,22 +218,25 @@ impl<'a> Trip<'a> {
             }
         }
         coming.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut fine = if is_flight { FineWorld::default() } else { driving.world.clone() };
+        // What stands on the ground is below those that fly.
+        let mut still = Layers { ground: driving.world.clone(), air: FineWorld::default() };
         // Nothing stands in an area that is closed to them, but their drivers stay out of it all the same.
         let activity = &network.occurrences[drive.occurrence.index()].activity;
         for closed in closed_to(world, &course.route.vehicles, activity).filter(|it| !it.is_solid()) {
-            fine.add(&snapshot::ground::obstacle(&closed.shape));
+            let closed = snapshot::ground::obstacle(&closed.shape);
+            still.ground.add(&closed);
+            still.air.add(&closed);
         }
-        let others = driving
-            .standing_m(&before.stand)
-            .filter(|(vehicle, _)| !drive.vehicles.contains(vehicle) && flies(*vehicle) == is_flight);
+        let others =
+            driving.standing_m(&before.stand).filter(|(vehicle, _)| !drive.vehicles.contains(vehicle));
         let neighbor = |(vehicle, stands_m): (u32, Point2<f64>)| {
             let drives = driving.drives.iter().flat_map(|drive| &drive.vehicles);
             let is_coming = |it: &&SimulatedVehicle| {
                 it.vehicle == vehicle && it.frames.last().is_some_and(|last| last.time > start)
             };
             let moves = drives.filter(is_coming).collect();
-            Neighbor { stands_m, moves, radius_m: vehicle::radius_m(world, vehicle) }
+            let (radius_m, flies) = (vehicle::radius_m(world, vehicle), vehicle::flies(world, vehicle));
+            Neighbor { stands_m, moves, radius_m, flies }
         };
         let neighbors = others.map(neighbor).collect();
         let length_m = drive.path.length_m();
@@ -233,15 +256,27 @@ impl<'a> Trip<'a> {
                 .iter()
                 .map(|&it| declared(it).map_or("?", |it| it.name.text.as_str()))
                 .collect(),
-            maps: models.iter().map(|model| drive.space.with_radius_m(model.circumradius_m)).collect(),
+            maps: models
+                .iter()
+                .zip(&flies)
+                .map(|(model, flies)| {
+                    let radius_m = model.circumradius_m;
+                    if *flies && !is_flight {
+                        // The map of those that drive is not that of one that flies above them.
+                        ConfigurationSpace::new(Occupancy::free(*drive.space.frame()), radius_m)
+                    } else {
+                        drive.space.with_radius_m(radius_m)
+                    }
+                })
+                .collect(),
             convoy: Convoy::new(members, drive.spacing_m, driving.seed),
             map: driving.map,
             vertices: passed_m.into_iter().zip(events.copied()).collect(),
             wanted_s: wanted_units(network, drive.occurrence, &driving.chosen) * unit_s,
             frames: vec![Vec::new(); count],
             steps_since_frame: vec![0; count],
-            world: fine.clone(),
-            still: fine,
+            world: still.clone(),
+            still,
             course,
             models,
             coming,
@@ -258,7 +293,8 @@ impl<'a> Trip<'a> {
             extra_meters: Vec::new(),
             arrived_m: None,
             least_clearance_m: f64::INFINITY,
-            known: if is_flight { Vec::new() } else { before.seen_m.clone() },
+            known: if flies.first() == Some(&true) { Vec::new() } else { before.seen_m.clone() },
+            flies,
             seen: SeenMap::default(),
             leg_ends_m: course.leg_ends_m.clone(),
         }
@@ -291,7 +327,8 @@ impl<'a> Trip<'a> {
             let has_changed = self.change_world(time_s, now);
             let others = self.others_from(now);
             let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
-            let around = Surroundings { world: &self.world, has_changed, maps: &self.maps, others: &others };
+            let Layers { ground: world, air } = &self.world;
+            let around = Surroundings { world, air, has_changed, maps: &self.maps, others: &others };
             let before = self.convoy.state(0).position_m;
             let steps = self.convoy.step(&around, self.pace_mps(), &most);
             self.driven_m += distance(&before, &self.convoy.state(0).position_m);
@@ -315,9 +352,9 @@ impl<'a> Trip<'a> {
         let mut has_changed = false;
         while let Some((_, obstacle, low)) = self.coming.pop_if(|(at_s, ..)| *at_s <= time_s) {
             if low {
-                self.still.add_low(&obstacle);
+                self.still.ground.add_low(&obstacle);
             } else {
-                self.still.add(&obstacle);
+                self.still.ground.add(&obstacle);
             }
             has_changed = true;
         }
@@ -327,7 +364,8 @@ impl<'a> Trip<'a> {
             self.world = self.still.clone();
             for (neighbor, center_m) in self.neighbors.iter().zip(&standing) {
                 let Some(center_m) = *center_m else { continue };
-                self.world.add(&Obstacle::Circle { center_m, radius_m: neighbor.radius_m });
+                let standing = Obstacle::Circle { center_m, radius_m: neighbor.radius_m };
+                self.world.of_mut(neighbor.flies).add(&standing);
             }
             self.standing = standing;
         }
@@ -344,7 +382,11 @@ impl<'a> Trip<'a> {
             let place = |second: u32| neighbor.place_m(now + f64::from(second) / self.unit_s);
             let is_near = distance(&place(0), &here_m) < NEAR_M;
             let seconds = if is_near { FORESEEN_S } else { 0 };
-            Some(OtherVehicle { places_m: (0..=seconds).map(place).collect(), radius_m: neighbor.radius_m })
+            Some(OtherVehicle {
+                places_m: (0..=seconds).map(place).collect(),
+                radius_m: neighbor.radius_m,
+                flies: neighbor.flies,
+            })
         };
         self.neighbors.iter().filter_map(other).collect()
     }
@@ -554,9 +596,9 @@ impl<'a> Trip<'a> {
     }
 
     fn note_clearance(&mut self) {
-        for (index, model) in self.models.iter().enumerate() {
+        for (index, (model, flies)) in self.models.iter().zip(&self.flies).enumerate() {
             let place = self.convoy.state(index).position_m;
-            let away_m = self.world.around(place, 12.0).distance_m(place) - model.circumradius_m;
+            let away_m = self.world.of(*flies).around(place, 12.0).distance_m(place) - model.circumradius_m;
             self.least_clearance_m = self.least_clearance_m.min(away_m);
         }
     }

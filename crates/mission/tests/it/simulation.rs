@@ -298,3 +298,20 @@ fn vehicles_that_leave_their_paths_do_not_touch_what_has_parked_meanwhile() {
         assert!(violations(&execution).is_empty(), "seed {seed}: {:?}", violations(&execution));
     }
 }
+
+/// A blimp that follows a rover flies above the rocks, and neither is in the other's way.
+#[test]
+fn a_formation_of_a_rover_and_a_blimp_arrives_whoever_leads() {
+    for [leader, follower] in [["ATRV", "Blimp"], ["Blimp", "ATRV"]] {
+        let mission = Mission::read(&format!(
+            "terrain \"tai-plain\" cell 0.6 origin (0, 0); location P0 (19, 23); location P1 (62, 35);
+vehicle V0 : {leader} at P0; vehicle V1 : {follower} at P0;
+primitive Duo(a, b, to)[0,200] moves a, b; scenario S[0,200] = {{ Duo(V0, V1, P1) }}"
+        ));
+        for seed in 0..6 {
+            let execution = mission.executed(seed, &[]);
+            let found = violations(&execution);
+            assert!(found.is_empty(), "{leader} leads, seed {seed}: {found:?} {:?}", progress(&execution));
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! Vehicles that share a place (SPEC 10.3): each has a place of its own there, at the start and wherever they meet.
 
 use crate::support::Mission;
+use kirk::Options;
 use mission::planning::Planned;
 use nalgebra::{Point2, distance};
 
@@ -173,4 +174,25 @@ fn vehicles_beside_a_location_at_the_edge_are_on_the_map() {
     let planned = Mission::read(source).with_plan((kirk::Options::default(), 0), |_, planned, _, _| planned);
     assert!(planned.planning.undrivable.is_empty(), "{:?}", planned.planning.undrivable);
     assert_eq!(planned.traverses.len(), 3);
+}
+
+/// A drive of no length takes no time, also where acceleration counts, and takes nothing from the times of others.
+#[test]
+fn a_kinodynamic_drive_to_where_the_vehicle_is_takes_no_time_and_the_one_before_its_own() {
+    let mission = Mission::read(
+        "location A (0, 0); location B (60, 0); vehicle R : ATRV at A;
+primitive Drive(to)[0,200] moves R speed (0.01, 0.4) kinodynamic;
+scenario S[0,99] = { Drive(B); Drive(B) }",
+    );
+    mission.with_plan((Options::default(), 0), |_, planned, _, _| {
+        let least: Vec<f64> = planned
+            .traverses
+            .iter()
+            .map(|it| it.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum())
+            .collect();
+        assert!(least[0] > 60.0 / 0.4 / 60.0 && least[1] == 0.0, "{least:?}");
+        let plan = &planned.planning.outcome.plans[0];
+        let end = plan.windows[planned.network.end.index()].expect("it is selected").earliest;
+        assert!(end.to_f64() > 2.5, "{end:?}");
+    });
 }

@@ -149,9 +149,10 @@ fn a_vehicle_with_a_slow_pace_is_not_blocked_by_nothing() {
     let settings = settings().at_most(1.0);
     for (seed, pace_mps) in [(1, 0.015), (2, 0.004), (3, 0.1)] {
         let path = Path::new([[0.0, 0.0], [9.0, 0.0]].map(Point2::from).to_vec());
-        let mut convoy = Convoy::new(vec![ConvoyMember { path, heading_rad: 2.0, settings }], 2.0, seed);
+        let mut convoy =
+            Convoy::new(vec![ConvoyMember { path, heading_rad: 2.0, settings, flies: false }], 2.0, seed);
         let world = FineWorld::default();
-        let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+        let around = Surroundings { world: &world, air: &world, has_changed: false, maps: &[], others: &[] };
         let mut steps = 0;
         while !convoy.has_arrived() {
             let (event, _) = convoy.step(&around, pace_mps, &[1.0]).swap_remove(0);
@@ -200,10 +201,12 @@ fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
     let leader = Path::new([[0.0, 0.0], [30.0, 0.0], [30.0, 25.0]].map(Point2::from).to_vec());
     let follower =
         Path::new([[-spacing_m, 0.0], [30.0, 0.0], [30.0, 25.0 - spacing_m]].map(Point2::from).to_vec());
-    let members = [leader, follower].map(|path| ConvoyMember { path, heading_rad: 0.0, settings }).to_vec();
+    let members = [leader, follower]
+        .map(|path| ConvoyMember { path, heading_rad: 0.0, settings, flies: false })
+        .to_vec();
     let mut convoy = Convoy::new(members, spacing_m, 3);
     let world = FineWorld::default();
-    let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+    let around = Surroundings { world: &world, air: &world, has_changed: false, maps: &[], others: &[] };
     let mut farthest = 0.0_f64;
     while !convoy.has_arrived() && convoy.time_s() < 600.0 {
         let stopped = (20.0..60.0).contains(&convoy.time_s());
@@ -231,7 +234,7 @@ fn a_convoy_that_is_sent_back_turns_around_without_touching() {
         let behind_m = |vehicle: usize| spacing_m * vehicle as f64;
         let members = (0..count).map(|vehicle| {
             let path = along(-behind_m(vehicle), 40.0 - behind_m(vehicle));
-            ConvoyMember { path, heading_rad: 0.0, settings }
+            ConvoyMember { path, heading_rad: 0.0, settings, flies: false }
         });
         let mut convoy = Convoy::new(members.collect(), spacing_m, seed);
         let mut world = FineWorld::default();
@@ -240,7 +243,7 @@ fn a_convoy_that_is_sent_back_turns_around_without_touching() {
             let corners = [[-60.0, near], [60.0, near], [60.0, far], [-60.0, far]];
             world.add(&Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() });
         }
-        let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+        let around = Surroundings { world: &world, air: &world, has_changed: false, maps: &[], others: &[] };
         let (mut is_sent_back, mut nearest) = (false, f64::INFINITY);
         while !convoy.has_arrived() && convoy.time_s() < 1_000.0 {
             if convoy.time_s() > 30.0 && !is_sent_back {
