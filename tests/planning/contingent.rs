@@ -4,7 +4,7 @@
 use acceptance::mission::{compile, error_codes, network};
 use exact::{Bound, Rational, Time};
 use rmpl::program::Controllability;
-use tpn::path::{PathLeg, TraversePath, insert_paths};
+use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcKind, BlockKind, Network, Top};
 
 /// Every arc that takes time or is the environment's: the name of what it belongs to or its kind, and its bounds.
@@ -142,7 +142,7 @@ fn with_path(bounds: &str, length_m: f64) -> Network {
         speed_mps: (speed(5), speed(10)),
         may_stop: false,
     };
-    insert_paths(&network, &[path], 60).expect("a sound path")
+    crate::paths::with_path(&network, &path, 60).expect("a sound path")
 }
 
 #[test]

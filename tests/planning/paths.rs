@@ -5,9 +5,20 @@ use exact::{Rational, Time};
 use kirk::Search;
 use serde::Deserialize as _;
 use serde_json::{Value, json};
-use tpn::path::{PathError, PathLeg, TraversePath, insert_paths};
+use tpn::path::{PathError, PathLeg, TraversePath, insert_path};
 use tpn::plan_json::plan_to_json;
 use tpn::{ArcKind, Network, OccurrenceId};
+
+/// The network with a path inserted.
+pub(crate) fn with_path(
+    network: &Network,
+    path: &TraversePath,
+    unit_seconds: i64,
+) -> Result<Network, PathError> {
+    let mut network = network.clone();
+    insert_path(&mut network, path, unit_seconds)?;
+    Ok(network)
+}
 
 fn enroute() -> Network {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/t01_enroute_scenario.rmpl");
@@ -50,7 +61,7 @@ fn thousandths(value: &Value) -> i64 {
 fn the_worked_example_has_its_waypoint_windows() {
     let before = enroute();
     let path = spec_path(&before, &[&[300.0], &[500.0], &[415.0]], false);
-    let network = insert_paths(&before, &[path], 60).expect("a path");
+    let network = with_path(&before, &path, 60).expect("a path");
     assert_eq!((network.nodes.len(), network.arcs.len()), (before.nodes.len() + 2, before.arcs.len() + 3));
     let durations: Vec<(i64, i64)> = (network.arcs.iter())
         .filter(|arc| arc.kind == ArcKind::Path)
@@ -79,7 +90,7 @@ fn the_worked_example_has_its_waypoint_windows() {
 fn every_id_of_the_network_stays_valid() {
     let before = enroute();
     let path = spec_path(&before, &[&[100.0, 200.0], &[500.0], &[15.0, 200.0, 200.0]], true);
-    let after = insert_paths(&before, &[path], 60).expect("a path");
+    let after = with_path(&before, &path, 60).expect("a path");
     // Six segments: five new events, named by leg and vertex; the last vertex is the traverse's end.
     assert_eq!(after.nodes.len(), before.nodes.len() + 5);
     assert_eq!(after.arcs.len(), before.arcs.len() + 6);
@@ -113,7 +124,7 @@ fn a_path_that_takes_too_long_fails_its_alternative() {
     let before = enroute();
     // 1,464 m at 0.05 m/s are 488 minutes, above 486.
     let path = spec_path(&before, &[&[1464.0]], true);
-    let network = insert_paths(&before, &[path], 60).expect("a path");
+    let network = with_path(&before, &path, 60).expect("a path");
     assert!(first_plan(&network, Search::Chronological).plans.is_empty());
     assert!(first_plan(&network, Search::ConflictDirected).plans.is_empty());
 }
@@ -127,7 +138,7 @@ fn seconds_are_thousandths_of_a_millisecond_count() {
         speed_mps: (Rational::ZERO, Rational::from(3)),
         may_stop: false,
     };
-    let after = insert_paths(&before, &[path], 1).expect("a path");
+    let after = with_path(&before, &path, 1).expect("a path");
     let arc = after.arcs.last().expect("an arc");
     // 10 / 3 s, rounded up to the millisecond; at speed zero there is no greatest duration.
     assert_eq!((arc.lower, arc.upper), (Time::new(3334, 1000).expect("a fraction"), exact::Bound::Infinite));
@@ -139,7 +150,7 @@ fn a_slope_that_slows_the_rover_down_makes_its_segment_longer_in_time() {
     let mut path = spec_path(&before, &[&[300.0, 500.0], &[415.0]], false);
     // 300 m at 0.04 m/s are 125 minutes, more than the 111 at the least speed; 500 m at 0.048 are 173.611 minutes.
     path.legs[0].slope_speeds_mps = vec![Some(0.04), Some(0.048)];
-    let after = insert_paths(&before, &[path], 60).expect("a path");
+    let after = with_path(&before, &path, 60).expect("a path");
     let durations: Vec<(i64, i64)> = (after.arcs.iter())
         .filter(|arc| arc.kind == ArcKind::Path)
         .map(|arc| (arc.lower, arc.upper.finite().expect("it may not stop")))
@@ -155,7 +166,7 @@ fn a_slope_that_slows_the_rover_down_makes_its_segment_longer_in_time() {
 fn what_is_no_path_is_refused() {
     let network = enroute();
     let good = spec_path(&network, &[&[300.0]], false);
-    let refused = |path: TraversePath| insert_paths(&network, &[path], 60).expect_err("no path");
+    let refused = |path: TraversePath| with_path(&network, &path, 60).expect_err("no path");
     assert_eq!(refused(TraversePath { legs: Vec::new(), ..good.clone() }), PathError::Empty);
     assert_eq!(
         refused(TraversePath { occurrence: OccurrenceId(9999), ..good.clone() }),

@@ -5,6 +5,7 @@
 //! the world decides comes when the world says so: if that is outside the event's window, the plan is violated.
 
 mod aborts;
+mod arrivals;
 mod frontier;
 mod states;
 
@@ -30,6 +31,7 @@ use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
 use crate::world_state::WorldState;
 use aborts::{Retreat, stopped_for};
+use arrivals::Arrival;
 use frontier::Frontier;
 use states::Odometer;
 
@@ -94,6 +96,7 @@ pub fn run_stage(
         log: Vec::new(),
         coming: VecDeque::new(),
         executions: BTreeMap::new(),
+        arrivals: Vec::new(),
         passes: BTreeMap::new(),
         odometers: VecDeque::new(),
         extra_m: BTreeMap::new(),
@@ -123,6 +126,8 @@ struct Run<'a> {
     coming: VecDeque<(OccurrenceId, Entry)>,
     /// When the activities that were started will be over.
     executions: BTreeMap<OccurrenceId, Ends>,
+    /// When those of them that drive arrive.
+    arrivals: Vec<Arrival>,
     /// After how long from their traverse's start path vertices are passed.
     passes: BTreeMap<OccurrenceId, Vec<(EventRef, Time)>>,
     /// What is so in the world.
@@ -467,6 +472,9 @@ impl Run<'_> {
         if let Some(scheduled) = self.scheduled.get(node.index()).copied().flatten() {
             time = time.max(latest.map_or(scheduled, |latest| scheduled.min(latest)));
         }
+        if let Some(leaving) = self.leaving_time(point) {
+            time = time.max(latest.map_or(leaving, |latest| leaving.min(latest)));
+        }
         let mut known = News::None;
         let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
@@ -698,7 +706,7 @@ impl Run<'_> {
         self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
         self.revise()?;
         self.expect(event.occurrence, execution);
-        Ok(())
+        self.note_arrivals()
     }
 
     /// Takes in how an activity will go.
@@ -737,7 +745,7 @@ impl Run<'_> {
         if let Some(readings) = revision.readings {
             self.readings = readings.into();
         }
-        Ok(())
+        self.note_arrivals()
     }
 
     /// Plans again from now; an answer says why there is no plan.
@@ -788,6 +796,7 @@ impl Run<'_> {
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         self.scheduled.clear();
+        self.note_arrivals()?;
         self.restart_frontier()?;
         Ok(kept.err().map(|node| {
             format!("the new plan changes {}, which has already happened", self.stage.name(node))

@@ -234,3 +234,29 @@ fn who_is_there_early_waits_for_what_its_next_step_follows() {
         }
     }
 }
+
+/// The last scout digs while the others visit a place in sequence, and has to be back for its own turn.
+const TURNS: &str = "
+location P0 (17, 25);
+location P3 (69, 62);
+location P4 (41, 43);
+model Scout { resource battery 0..100 = 78; resource arm; state drill : {STOWED, OUT} = STOWED; }
+vehicle S[1..4] : Scout at P0;
+primitive Drive(r : vehicle, to : location)[0,200] moves r  requires r.drill = STOWED consumes r.battery 0.1 per metre;
+primitive Drill(r : Scout, at : location)[2,6] requires r.at = at sets r.drill = OUT uses r.arm consumes r.battery 6 rewards 5;
+primitive Stow(r : Scout)[1,2] sets r.drill = STOWED;
+primitive Shoot(r : Scout, at : location)[1,3] requires r.at = at, r.drill = STOWED uses r.arm rewards 3;
+primitive Sun(r : vehicle)[3,20] produces r.battery 1.5 per minute;
+objective minimize end;
+Visit(r, site) = { Drive(r, site); Shoot(r, site) }
+Dig(r, site) = { Drive(r, site); Drill(r, site); Stow(r) }
+scenario M[0,200] = { each r in S in sequence { Visit(r, P4) }, { delay; delay; Sun(S[4]); delay; Dig(S[4], P3) } }";
+
+/// Events that would leave a vehicle under way no time to arrive wait for it, as long as they can.
+#[test]
+fn a_vehicle_that_needs_longer_than_its_path_is_waited_for() {
+    for seed in 0..5 {
+        let execution = executed(TURNS, seed);
+        assert_eq!(execution.ending, Ending::Finished, "seed {seed}: {:?}", violations(&execution));
+    }
+}
