@@ -4,6 +4,7 @@
 
 pub mod activity_execution;
 mod adversary;
+mod arrivals;
 mod dispatch;
 pub mod facts;
 mod instants;

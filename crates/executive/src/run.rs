@@ -5,7 +5,6 @@
 //! the world decides comes when the world says so: if that is outside the event's window, the plan is violated.
 
 mod aborts;
-mod arrivals;
 mod frontier;
 mod states;
 
@@ -23,6 +22,7 @@ use tpn::{
 
 use crate::activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Ends, PlantReading};
 use crate::adversary::Adversary;
+use crate::arrivals::Arrivals;
 use crate::dispatch::SettleError;
 use crate::facts::Facts;
 use crate::log::{Ending, Entry, Happening};
@@ -31,7 +31,6 @@ use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
 use crate::world_state::WorldState;
 use aborts::{Retreat, stopped_for};
-use arrivals::Arrival;
 use frontier::Frontier;
 use states::Odometer;
 
@@ -96,7 +95,7 @@ pub fn run_stage(
         log: Vec::new(),
         coming: VecDeque::new(),
         executions: BTreeMap::new(),
-        arrivals: Vec::new(),
+        arrivals: Arrivals::default(),
         passes: BTreeMap::new(),
         odometers: VecDeque::new(),
         extra_m: BTreeMap::new(),
@@ -127,7 +126,7 @@ struct Run<'a> {
     /// When the activities that were started will be over.
     executions: BTreeMap<OccurrenceId, Ends>,
     /// When those of them that drive arrive.
-    arrivals: Vec<Arrival>,
+    arrivals: Arrivals,
     /// After how long from their traverse's start path vertices are passed.
     passes: BTreeMap<OccurrenceId, Vec<(EventRef, Time)>>,
     /// What is so in the world.
@@ -472,7 +471,7 @@ impl Run<'_> {
         if let Some(scheduled) = self.scheduled.get(node.index()).copied().flatten() {
             time = time.max(latest.map_or(scheduled, |latest| scheduled.min(latest)));
         }
-        if let Some(leaving) = self.leaving_time(point) {
+        if let Some(leaving) = self.arrivals.leaving_time(&self.stage, point) {
             time = time.max(latest.map_or(leaving, |latest| leaving.min(latest)));
         }
         let mut known = News::None;
@@ -707,6 +706,12 @@ impl Run<'_> {
         self.revise()?;
         self.expect(event.occurrence, execution);
         self.note_arrivals()
+    }
+
+    /// Asks those under way when they arrive.
+    fn note_arrivals(&mut self) -> Result<(), PlanError> {
+        self.arrivals = Arrivals::ask(&mut self.stage, &self.executions)?;
+        Ok(())
     }
 
     /// Takes in how an activity will go.

@@ -105,7 +105,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
         &app,
         "needs attention: Tell(PATH1=OK)#1 supports PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
     ));
-    assert!(has(&app, "Causal links, needs attention, 1 attention"));
+    assert!(has(&app, "Causal links, needs attention, 1 needs attention"));
     assert!(has(&app, "Robustness, not run yet"));
     assert!(has(&app, "Conflicts between vehicles"));
 }

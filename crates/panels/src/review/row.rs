@@ -14,7 +14,7 @@ use crate::{Context, inline_code};
 pub(super) const INDENT: f32 = 26.0;
 /// Room for the line number on the right, and for all that is there, at least.
 const PLACE: f32 = 54.0;
-const LEAST_META: f32 = 118.0;
+const MIN_META: f32 = 118.0;
 /// Narrower rows put what is on the right below the text.
 const NARROW: f32 = 430.0;
 
@@ -47,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let color = if row.is_muted { tokens.text_muted } else { tokens.text };
     let word_color = look.map_or(tokens.text_muted, |(_, _, color)| color);
     let word_galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(word.to_owned(), small.clone(), word_color));
-    let meta_width = if is_narrow { 0.0 } else { (PLACE + word_galley.size().x + space::M).max(LEAST_META) };
+    let meta_width = if is_narrow { 0.0 } else { (PLACE + word_galley.size().x + space::M).max(MIN_META) };
     let wrap = (width - left - space::M - meta_width).max(60.0);
     let mut job = inline_code::job(row.text, &body, color, wrap);
     if !row.criterion.is_empty() {

@@ -1,0 +1,58 @@
+//! When vehicles under way arrive: what would leave them no time for that waits, as long as the plan lets it.
+
+use std::collections::BTreeMap;
+
+use exact::{Overflow, Time};
+use stn::{INFINITE, PointId};
+use tpn::OccurrenceId;
+
+use crate::activity_execution::Ends;
+use crate::plan_network::PlanError;
+use crate::stage::Stage;
+
+/// The arrivals of those under way, in one stage.
+#[derive(Default)]
+pub(crate) struct Arrivals(Vec<Arrival>);
+
+/// When an activity under way can end, as its driver tells.
+struct Arrival {
+    end: PointId,
+    /// The earliest tick at which it can.
+    at: i64,
+    /// For each point how many ticks after it the activity ends at the latest.
+    after: Vec<i64>,
+}
+
+impl Arrivals {
+    /// Asks those under way when they arrive.
+    pub(crate) fn ask(
+        stage: &mut Stage,
+        executions: &BTreeMap<OccurrenceId, Ends>,
+    ) -> Result<Self, PlanError> {
+        let mut arrivals = Vec::new();
+        for (occurrence, ends) in executions {
+            let Ends::NotBefore(duration) = ends else { continue };
+            let described = &stage.network.occurrences[occurrence.index()];
+            let [started, ended] = [described.start, described.end].map(|node| stage.times[node.index()]);
+            let (Some(started), None) = (started, ended) else { continue };
+            let Some(end) = stage.made.point(described.end) else { continue };
+            let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", described.name) };
+            let at = started.checked_add(*duration).ok_or(Overflow).map_err(too_late)?;
+            let at = stage.made.scale().ticks(at).map_err(too_late)?;
+            let mut after = Vec::new();
+            stage.made.stn.distances_to(end, &mut after)?;
+            arrivals.push(Arrival { end, at, after });
+        }
+        Ok(Self(arrivals))
+    }
+
+    /// The earliest time at which a point leaves all those under way the time to arrive.
+    pub(crate) fn leaving_time(&self, stage: &Stage, point: PointId) -> Option<Time> {
+        let others = self.0.iter().filter(|arrival| arrival.end != point);
+        let times = others.filter_map(|arrival| {
+            let after = arrival.after.get(point.index()).copied().filter(|&after| after != INFINITE)?;
+            arrival.at.checked_sub(after)
+        });
+        times.max().map(|ticks| stage.made.time(ticks))
+    }
+}
