@@ -65,7 +65,7 @@ pub(crate) type FormationEnds<'ends> = &'ends dyn Fn(&Route) -> Vec<Point2<f64>>
 
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
 /// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped. Vehicles that
-/// followed another one start from its place: see [`routes_between`].
+/// followed another one start from its place.
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     routes_between(network, program, plan, places, &|_| Vec::new())
 }
