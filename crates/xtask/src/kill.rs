@@ -225,6 +225,8 @@ impl Running {
 
     /// The text that the page has after it was started; a missing end may come a moment after the page itself.
     fn find(&mut self, expected: &str) -> Result<String> {
+        // A busy machine opens the database late after a kill; the page goes on without it meanwhile.
+        self.wait_until("enroute.state().library.keeping !== 'opening'")?;
         let found = self.ask(&format!(
             "(async () => {{ for (let at = 0; at < 40 && enroute.source() !== {}; at++) \
              await new Promise((done) => setTimeout(done, 50)); return enroute.source(); }})()",
