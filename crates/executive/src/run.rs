@@ -704,8 +704,9 @@ impl Run<'_> {
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
         self.revise()?;
+        let drives = matches!(execution.ends, Ends::NotBefore(_));
         self.expect(event.occurrence, execution);
-        self.note_arrivals()
+        if drives { self.note_arrivals() } else { Ok(()) }
     }
 
     /// Asks those under way when they arrive.

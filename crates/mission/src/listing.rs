@@ -235,15 +235,17 @@ pub(crate) fn inserted(
 ) -> Result<BTreeMap<OccurrenceId, Inserted>, String> {
     let mut inserted = BTreeMap::new();
     let Some(ground) = problem.ground else { return Ok(inserted) };
-    loop {
-        let mut routes = planning::routes(problem, network, plan, &inserted).into_iter();
-        let Some(route) = routes.find(|route| !planning::is_inserted(route, &inserted)) else {
-            return Ok(inserted);
-        };
+    for mut route in planning::routes(problem, network, plan, &inserted) {
+        if route.has_followed {
+            // Where it starts is known now that the paths before it are.
+            let routes = planning::routes(problem, network, plan, &inserted);
+            route = routes.into_iter().find(|it| it.occurrence == route.occurrence).unwrap_or(route);
+        }
         let legs = planning::legs(problem, ground, grounds, paths, &route).map_err(|undrivable| {
             let name = &problem.network.occurrences[route.occurrence.index()].name;
             format!("{name} can't be driven {}", undrivable.reason)
         })?;
         inserted.insert(route.occurrence, Inserted::new(ground, grounds, route, Ok(legs)));
     }
+    Ok(inserted)
 }

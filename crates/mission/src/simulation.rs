@@ -298,13 +298,13 @@ impl<'run> Driving<'run> {
         Ok(Driven { drive, execution, seen, stand })
     }
 
-    /// A drive of those that were started is as it was driven now.
-    fn take_in(&mut self, index: usize, driven: Driven) {
+    /// Notes what driving a traverse has come to. Returns the drive.
+    fn take_in(&mut self, driven: Driven) -> SimulatedDrive {
         let Driven { drive, execution, seen, stand } = driven;
         self.revised.insert(drive.occurrence, execution);
-        self.drives[index] = drive;
         self.seen.extend(seen);
         self.stand.extend(stand);
+        drive
     }
 
     /// Where vehicles under way would touch, one of the two is driven again, which knows less than the other one of what was
@@ -329,7 +329,7 @@ impl<'run> Driving<'run> {
             }
             let again = self.driven(network, course, (self.drives[index].start, before))?;
             self.departed[index].turn = last + 1;
-            self.take_in(index, again);
+            self.drives[index] = self.take_in(again);
         }
         Ok(())
     }
@@ -410,8 +410,8 @@ impl ActivityExecutor for Driving<'_> {
         let driven = self.driven(network, &course, (start, &before))?;
         let turn = self.departed.iter().map(|departed| departed.turn + 1).max().unwrap_or(0);
         self.departed.push(Departed { course, before, turn });
-        self.drives.push(driven.drive.clone());
-        self.take_in(self.drives.len() - 1, driven);
+        let drive = self.take_in(driven);
+        self.drives.push(drive);
         self.keep_apart(network, start)?;
         Ok(self.revised.remove(&occurrence).unwrap_or_default())
     }

@@ -18,7 +18,7 @@ const SIDE_SPACINGS: f64 = 0.5;
 /// One that hangs back does so by so many spacings at a time, and so many times at most.
 const STEP_SPACINGS: f64 = 0.125;
 const MAX_HANGING: u32 = 64;
-/// Rings around a place on which another one is looked for: so many spacings apart, and so many of them.
+/// If a place is taken, rings around it are searched: the distance between two rings in spacings, and their number.
 const RING_SPACINGS: f64 = 0.25;
 const MAX_RINGS: u32 = 24;
 

@@ -219,8 +219,7 @@ impl Session {
         }
     }
 
-    /// Does what was asked from outside, and keeps what came of it before a frame shows it: a browser may put the page away,
-    /// and open another one, before there is a frame.
+    /// Runs a command of a host page and saves the result at once: the browser may leave the page before the next frame.
     fn do_at_once(&mut self, command: Command) {
         self.apply(vec![command]);
         let now_secs = self.state.frame.now_secs;

@@ -110,7 +110,7 @@ pub(super) struct Trip<'a> {
     pub(super) convoy: Convoy,
     /// Which of its vehicles fly.
     flies: Vec<bool>,
-    /// What its sensors can see, whoever else is there.
+    /// What its sensors see without the other vehicles.
     still: Layers,
     /// The same with the vehicles that stand there.
     world: Layers,
