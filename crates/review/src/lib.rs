@@ -18,6 +18,7 @@ mod former_record;
 mod hash;
 mod judge;
 pub mod keys;
+mod late_drives;
 mod lines;
 pub mod names;
 mod overlaps;

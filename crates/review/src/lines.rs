@@ -1,16 +1,19 @@
 //! The checklist of a snapshot.
 
+use std::collections::BTreeSet;
+
 use rmpl::diagnostics::exogenous;
 use rmpl::files::Files;
 use rmpl::program::{Controllability, Measure, TimeUnit};
 use rmpl::{LineIndex, Severity, Span};
 use snapshot::Goal;
 use snapshot::{Planning, Snapshot, Stage};
-use tpn::{ArcKind, Network, NodeId};
+use tpn::{ArcKind, Network, NodeId, OccurrenceId};
 
 use super::demand_lines::status_by_checker;
+use super::late_drives::late_drives;
 use super::place::find_places;
-use super::plan_lines::{PlanLines, driven_within_s, short_of_its_goal_m};
+use super::plan_lines::{PlanLines, short_of_its_goal_m};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
@@ -20,13 +23,17 @@ use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 /// the number of alternatives; it is meant to be asked for, not to follow every edit.
 pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut() -> bool) -> Review {
     let places = Places::new(&snapshot.source);
+    let late = match (&snapshot.network, snapshot.plan()) {
+        (Some(network), Some(plan)) => late_drives(snapshot, network, plan),
+        _ => BTreeSet::new(),
+    };
     let mut review = Review {
         content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
         plan_hash: plan_hash(snapshot),
         rules: FlightRules::default(),
         unit: unit(snapshot).to_owned(),
         status: Status::Passed,
-        plan: plan_section(snapshot, &places),
+        plan: plan_section(snapshot, &late, &places),
         choices: Vec::new(),
         causal_links: Vec::new(),
         conflicts: Vec::new(),
@@ -43,7 +50,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         mission_rules: Vec::new(),
         warnings: warnings(snapshot, &places),
     };
-    if let Some(mut lines) = PlanLines::new(snapshot, &places) {
+    if let Some(mut lines) = PlanLines::new(snapshot, &late, &places) {
         review.choices = lines.choices(stop);
         review.causal_links = lines.causal_links();
         review.conflicts = lines.conflicts();
@@ -116,7 +123,7 @@ pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
 /// How the line of a strongly controllable plan begins.
 pub(crate) const STRONG: &str = "strongly controllable: ";
 
-fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+fn plan_section(snapshot: &Snapshot, late: &BTreeSet<OccurrenceId>, places: &Places<'_>) -> Vec<Line> {
     let Some(network) = &snapshot.network else {
         return vec![places.plain(Status::Failed, "there is no plan, because the text has errors")];
     };
@@ -132,7 +139,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     } else {
         let mut lines = vec![places.plain(Status::Passed, PLAN)];
         lines.extend(emptiness(planning, network, places));
-        lines.extend(controllability(snapshot, planning, network, places));
+        lines.extend(controllability(snapshot, planning, network, late, places));
         lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
         lines.extend(assumptions(snapshot, places));
@@ -158,6 +165,7 @@ fn controllability(
     snapshot: &Snapshot,
     planning: &Planning,
     network: &Network,
+    late: &BTreeSet<OccurrenceId>,
     places: &Places<'_>,
 ) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
@@ -204,33 +212,18 @@ fn controllability(
         ),
     };
     let is_checked = network.controllability != Controllability::None;
-    let late = if is_checked { late_drives(snapshot, network, &nodes) } else { Vec::new() };
-    if !late.is_empty() {
-        text.push_str(&format!("; unmapped obstacles may extend {} beyond that", late.join(", ")));
+    let is_late = is_checked && !late.is_empty();
+    if is_late {
+        let names: Vec<&str> =
+            late.iter().map(|drive| network.occurrences[drive.index()].name.as_str()).collect();
+        text.push_str(&format!("; slow driving in {} may make the plan late", names.join(", ")));
     }
     let has_meetings = is_checked && !snapshot.separation_violations.is_empty();
     if has_meetings {
         text.push_str("; vehicles that come too close may delay each other beyond that");
     }
-    let status = if late.is_empty() && !has_meetings { status } else { status.max(Status::Attention) };
+    let status = if !is_late && !has_meetings { status } else { status.max(Status::Attention) };
     Some(places.line(status, text, None, names, nodes))
-}
-
-/// The traverses that end at these nodes, and may take longer than their greatest contingent duration.
-fn late_drives<'network>(
-    snapshot: &Snapshot,
-    network: &'network Network,
-    ends: &[NodeId],
-) -> Vec<&'network str> {
-    let unit_s = snapshot.program.options.time_unit.seconds() as f64;
-    let late = snapshot.traverses.iter().filter_map(|traverse| {
-        let occurrence = &network.occurrences[traverse.occurrence.index()];
-        let arc = Some(&network.arcs[occurrence.arc?.index()]).filter(|arc| arc.is_contingent)?;
-        let most = arc.upper.finite()?;
-        let is_late = most.to_f64() * unit_s < driven_within_s(snapshot, network, traverse) - 1e-3;
-        (ends.contains(&occurrence.end) && is_late).then_some(occurrence.name.as_str())
-    });
-    late.collect()
 }
 
 /// Each duration that the environment chooses.

@@ -27,6 +27,8 @@ pub(super) struct PlanLines<'input> {
     planning: &'input Planning,
     plan: &'input Plan,
     distances: Distances,
+    /// The drives for which the plan may not leave enough time.
+    late: &'input BTreeSet<OccurrenceId>,
     places: &'input Places<'input>,
     /// How everything stands that the checker examines.
     checked: Status,
@@ -34,13 +36,17 @@ pub(super) struct PlanLines<'input> {
 
 impl<'input> PlanLines<'input> {
     /// `None` without a plan.
-    pub(super) fn new(snapshot: &'input Snapshot, places: &'input Places<'input>) -> Option<Self> {
+    pub(super) fn new(
+        snapshot: &'input Snapshot,
+        late: &'input BTreeSet<OccurrenceId>,
+        places: &'input Places<'input>,
+    ) -> Option<Self> {
         let network = snapshot.network.as_deref()?;
         let planning = snapshot.planning.as_deref()?;
         let plan = planning.outcome.plans.first()?;
         let distances = Distances::new(network, plan)?;
         let checked = status_by_checker(planning);
-        Some(Self { snapshot, network, planning, plan, distances, places, checked })
+        Some(Self { snapshot, network, planning, plan, distances, late, places, checked })
     }
 
     /// The lines about what lasts and what is limited.
@@ -358,14 +364,12 @@ impl<'input> PlanLines<'input> {
         let unit_s = self.snapshot.program.options.time_unit.seconds() as f64;
         let is_too_short =
             needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
-        let driven_s = driven_within_s(self.snapshot, self.network, traverse);
-        let is_tight =
-            duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
+        let is_late = self.late.contains(&traverse.occurrence);
         let others = self.in_the_way(traverse);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
-            _ if is_tight || !others.is_empty() => Status::Attention,
+            _ if is_late || !others.is_empty() => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -389,9 +393,10 @@ impl<'input> PlanLines<'input> {
             None => String::new(),
         };
         let mut driving = String::new();
-        if is_tight {
-            let most = driven_s / unit_s;
-            driving = format!("; unmapped obstacles may extend it to {most:.1} {}", unit(self.snapshot));
+        if is_late {
+            let most = driven_within_s(self.snapshot, self.network, traverse) / unit_s;
+            driving =
+                format!("; slow driving, up to {most:.1} {}, may make the plan late", unit(self.snapshot));
         }
         if !others.is_empty() {
             driving.push_str(&format!("; {} may be in its way", others.join(", ")));

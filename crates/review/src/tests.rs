@@ -331,10 +331,41 @@ fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() 
     let mapped = "terrain \"flat\" cell 0.6;";
     let (status, text) = controllable(mapped, "1.2");
     assert_eq!(status, Status::Attention, "{text}");
-    assert!(text.ends_with("; unmapped obstacles may extend Drive#1 beyond that"), "{text}");
+    assert!(text.ends_with("; slow driving in Drive#1 may make the plan late"), "{text}");
     // With more time, or without a map that may leave out rocks, nothing extends it.
     for (terrain, most) in [(mapped, "9"), ("", "1.2")] {
         assert_eq!(controllable(terrain, most).0, Status::Passed);
+    }
+}
+
+#[test]
+fn a_drive_that_others_cannot_wait_for_needs_attention() {
+    let drive = |scenario: &str| {
+        let source = format!(
+            "location A (20, 20); location B (50, 20); vehicle R : ATRV at A; var SKY : {{OK, BAD}};
+             primitive Drive(to)[0,200] moves R speed (0.1, 0.5) requires SKY=OK;
+             primitive Free(to)[0,200] moves R speed (0.1, 0.5);
+             primitive Walk() contingent [1,4]; primitive Rest()[10,10];
+             scenario S[0,600] = {scenario}"
+        );
+        let review = reviewed(&source);
+        let line = &review.traverses.first().expect("a drive").line;
+        let is_late = line.text.ends_with("; slow driving, up to 1.3 min, may make the plan late");
+        assert_eq!(line.status == Status::Attention, is_late, "{}", line.text);
+        line.status
+    };
+    // 30 m at 0.5 m/s are one minute, and may take up to 1.31 min.
+    let cases = [
+        // The whole plan has to wait, together with what the environment chooses.
+        ("{ { { Walk(); Free(B) } [0,5.2] }; delay }", Status::Attention),
+        ("{ { { Walk(); Free(B) } [0,5.4] }; delay }", Status::Passed),
+        ("{ { { Walk(); Free(B) } [0,5.4] }; { delay[0,2]; Rest() } }", Status::Passed),
+        // The sky is to be clear no longer than needed, and has to be before the drive sets out.
+        ("{ { Rest(); Drive(B) }, { delay; SKY=OK [4,4] } }", Status::Attention),
+        ("{ Drive(B), { SKY=OK [4,4] } }", Status::Passed),
+    ];
+    for (scenario, status) in cases {
+        assert_eq!(drive(scenario), status, "{scenario}");
     }
 }
 

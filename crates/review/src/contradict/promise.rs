@@ -347,8 +347,17 @@ impl Promise {
             Self::Lasts { activity, range } => {
                 // What was never started says nothing.
                 let started = came(&format!("{activity}.start"))?;
-                let Some(ended) = came(&format!("{activity}.end")) else {
-                    return Some(Some("it did not end".to_owned()));
+                let end = format!("{activity}.end");
+                let Some(ended) = came(&end) else {
+                    // What stopped for another reason in the middle says nothing either.
+                    let stopped_by = log.iter().rev().find_map(|entry| match &entry.happening {
+                        Happening::Violation { name, .. } => Some(name),
+                        _ => None,
+                    });
+                    let lasted = log.last()?.time.checked_sub(started)?;
+                    let is_stopped = stopped_by.is_some_and(|name| *name != end)
+                        && Bound::Finite(lasted) <= range.greatest;
+                    return (!is_stopped).then(|| Some("it did not end".to_owned()));
                 };
                 let lasted = ended.checked_sub(started)?;
                 let is_in = lasted >= range.least && Bound::Finite(lasted) <= range.greatest;

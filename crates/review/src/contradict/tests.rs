@@ -423,6 +423,29 @@ fn a_contact_in_a_run_contradicts_that_vehicles_keep_apart() {
 }
 
 #[test]
+fn a_drive_that_another_event_stops_is_not_contradicted() {
+    let source = "location A (0, 0); location B (30, 0); vehicle R1 : ATRV at A; vehicle R2 : ATRV at B;
+        primitive Drive(r, to)[1,100] moves r; scenario S[0,100] = { Drive(R1, A); Drive(R2, A) }";
+    let snapshot = snapshot(source);
+    let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    let of = |stopped_by: &str, at: i64| {
+        let mut trial = Trial::new(&snapshot, &reviewed, None, Effort::default()).expect("a plan");
+        let entry = |time: i64, happening| executive::Entry { time: Time::from(time), happening };
+        let reason = "late".to_owned();
+        let log = [
+            entry(0, Happening::Executed { name: "Drive#1.start".into() }),
+            entry(at, Happening::Violation { name: stopped_by.into(), reason, is_contact: false }),
+        ];
+        trial.try_run(&Script::default(), &observed(&log, Ending::Stopped));
+        let line = trial.tried().find(|it| it.line.text.starts_with("Drive#1: ")).expect("it drives");
+        line.verdict()
+    };
+    assert_ne!(of("Drive#2.end", 5), Verdict::Contradicted);
+    assert_eq!(of("Drive#1.end", 5), Verdict::Contradicted);
+    assert_eq!(of("Drive#2.end", 101), Verdict::Contradicted, "it is late as well");
+}
+
+#[test]
 fn a_level_that_is_required_is_tried_in_schedules() {
     let source = "resource Battery 0..100 = 50; primitive Dig()[1,2] requires Battery >= 30 at start consumes Battery 10;
                   scenario S[0,9] = { Dig() }";

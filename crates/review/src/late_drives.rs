@@ -1,0 +1,302 @@
+//! The drives that may end too late for a plan: driving can take longer than the path at its greatest speed, which is
+//! what plans count.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use controllability::{PlanNetwork, Source, plan_network};
+use exact::{Bound, Overflow, Scale, Time};
+use snapshot::Snapshot;
+use stn::PointId;
+use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
+
+use super::plan_lines::driven_within_s;
+
+/// The drives that a run of the plan may not be able to wait for, if they take as long as drivers were measured to take.
+///
+/// A plan can wait for a drive if it withstands the longest that all drives take, and if nothing before the drive sets
+/// out has to be late for the sake of a deadline after it: once it has set out, its driver tells when it arrives, and
+/// what is left waits for that. Whether something has to be late is judged by how far apart two events can be if
+/// everything happens as soon as it may, which can take a drive for late that is not.
+///
+/// Takes as long as deciding whether the plan is controllable, once more than there are late drives, and a look at the
+/// whole plan for each deadline that may be missed. Where times do not fit, all drives are late.
+pub(super) fn late_drives(snapshot: &Snapshot, network: &Network, plan: &Plan) -> BTreeSet<OccurrenceId> {
+    let unit_s = snapshot.program.options.time_unit.seconds();
+    let mut late = BTreeSet::new();
+    let mut longer = BTreeMap::new();
+    for traverse in snapshot.traverses.iter() {
+        let id = traverse.occurrence;
+        let Some(arc) = network.occurrences[id.index()].arc else { continue };
+        let arc = &network.arcs[arc.index()];
+        let driven_s = driven_within_s(snapshot, network, traverse);
+        if arc.is_contingent {
+            let most_s = arc.upper.finite().map(|most| most.to_f64() * unit_s as f64);
+            if most_s.is_some_and(|most_s| most_s < driven_s - 1e-3) {
+                late.insert(id);
+            }
+            continue;
+        }
+        let least = Time::checked_sum(traverse.leg_figures.iter().map(|leg| leg.least_duration));
+        let driven = Time::from_f64_up(driven_s, 1000).and_then(|driven_s| driven_s.checked_div(unit_s));
+        match driven.zip(least).and_then(|(driven, least)| driven.checked_sub(least)) {
+            Some(by) if by.is_positive() => drop(longer.insert(id, by)),
+            Some(_) => {}
+            None => drop(late.insert(id)),
+        }
+    }
+    if !longer.is_empty() {
+        let drives: Vec<OccurrenceId> = longer.keys().copied().collect();
+        match late_where_longer(network, plan, longer) {
+            Ok(those) => late.extend(those),
+            Err(Overflow) => late.extend(drives),
+        }
+    }
+    late
+}
+
+/// The drives that may be late where each takes `longer` than planned by so much.
+fn late_where_longer(
+    network: &Network,
+    plan: &Plan,
+    mut longer: BTreeMap<OccurrenceId, Time>,
+) -> Result<BTreeSet<OccurrenceId>, Overflow> {
+    let scale = longer.values().try_fold(controllability::scale(network)?, |scale, &by| scale.refined(by))?;
+    let mut late = BTreeSet::new();
+    let slow = loop {
+        let slow = driven(network, plan, &longer, scale)?;
+        // Nothing stops it, so that only numbers can keep it from an answer.
+        let refutation = slow.refute(network.controllability, &mut || false).map_err(|_| Overflow)?;
+        let Some(refutation) = refutation else { break slow };
+        let drive = |source: &Source| match source {
+            Source::Arc(arc, _) => network.arcs[arc.index()].occurrence.filter(|it| longer.contains_key(it)),
+            Source::Precedence(_) | Source::Tie(_) => None,
+        };
+        let refuted: BTreeSet<OccurrenceId> = refutation.sources.iter().filter_map(drive).collect();
+        if refuted.is_empty() {
+            // Not a plan, whatever its drives take. The checker says so.
+            return Ok(late);
+        }
+        longer.retain(|drive, _| !refuted.contains(drive));
+        late.extend(refuted);
+    };
+    let quick = driven(network, plan, &BTreeMap::new(), scale)?;
+    let point = |node| slow.point(node).map(PointId::index);
+    let drive = |(&drive, &arc): (&OccurrenceId, &ArcId)| {
+        let arc = &network.arcs[arc.index()];
+        let is_longer = longer.contains_key(&drive);
+        is_longer.then_some(Drive { id: drive, start: point(arc.from)?, on_the_way: point(arc.to)? })
+    };
+    let drives: Vec<Drive> = first_segments(network, plan).iter().filter_map(drive).collect();
+    late.extend(Execution::new(&quick, &slow).late(&drives));
+    Ok(late)
+}
+
+/// The network of a plan as it is executed, with drives that take at least so much longer than planned. The vertices of
+/// a path are no deadlines then, and each may be passed so much later.
+fn driven(
+    network: &Network,
+    plan: &Plan,
+    longer: &BTreeMap<OccurrenceId, Time>,
+    scale: Scale,
+) -> Result<PlanNetwork, Overflow> {
+    let mut network = network.clone();
+    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        arc.upper = Bound::Infinite;
+    }
+    for (drive, first) in first_segments(&network, plan) {
+        if let Some(&by) = longer.get(&drive) {
+            let arc = &mut network.arcs[first.index()];
+            arc.lower = arc.lower.checked_add(by).ok_or(Overflow)?;
+        }
+    }
+    plan_network(&network, &plan.selected_arcs, &plan.precedences(&network), scale)
+}
+
+/// The first segment of the path of each drive.
+fn first_segments(network: &Network, plan: &Plan) -> BTreeMap<OccurrenceId, ArcId> {
+    let selected = network.arcs.iter().zip(&plan.selected_arcs).enumerate();
+    let first = selected.filter_map(|(index, (arc, &is_selected))| {
+        let drive = arc.occurrence.filter(|_| is_selected && arc.kind == ArcKind::Path)?;
+        let is_first = arc.from == network.occurrences[drive.index()].start;
+        is_first.then_some((drive, ArcId::from_index(index)))
+    });
+    first.collect()
+}
+
+/// A drive in the network.
+struct Drive {
+    id: OccurrenceId,
+    /// The point where it sets out.
+    start: usize,
+    /// The end of its first segment.
+    on_the_way: usize,
+}
+
+/// A plan whose events happen as soon as they may, each after all that it follows, whatever that takes.
+struct Execution {
+    steps: Vec<Step>,
+    deadlines: Vec<Deadline>,
+    /// By point, the steps that lead to it.
+    before: Vec<Vec<usize>>,
+    /// By point, the steps that lead on.
+    after: Vec<Vec<usize>>,
+    /// All points, each after those that it follows, but for those that follow each other at one instant.
+    order: Vec<usize>,
+    origin: usize,
+}
+
+/// One event follows another.
+struct Step {
+    from: usize,
+    to: usize,
+    /// In ticks.
+    least: i64,
+    most: i64,
+}
+
+/// An event has to come no later than this after another.
+struct Deadline {
+    since: usize,
+    event: usize,
+    /// In ticks.
+    within: i64,
+}
+
+impl Execution {
+    /// Of a plan with its drives at their shortest and at their longest.
+    fn new(quick: &PlanNetwork, slow: &PlanNetwork) -> Self {
+        let points = quick.network.num_points();
+        let (mut steps, mut deadlines) = (Vec::new(), Vec::new());
+        for (least, most) in quick.network.edges().iter().zip(slow.network.edges()) {
+            let (from, to) = (least.from.index(), least.to.index());
+            if least.weight > 0 {
+                deadlines.push(Deadline { since: from, event: to, within: least.weight });
+            } else {
+                steps.push(Step { from: to, to: from, least: -least.weight, most: -most.weight });
+            }
+        }
+        steps.extend(quick.network.links().iter().map(|link| Step {
+            from: link.activation.index(),
+            to: link.end.index(),
+            least: link.lower,
+            most: link.upper,
+        }));
+        let (mut before, mut after) = (vec![Vec::new(); points], vec![Vec::new(); points]);
+        for (index, step) in steps.iter().enumerate() {
+            before[step.to].push(index);
+            after[step.from].push(index);
+        }
+        let mut missing: Vec<usize> = before.iter().map(Vec::len).collect();
+        let mut order: Vec<usize> = (0..points).filter(|&point| missing[point] == 0).collect();
+        let mut next = 0;
+        while let Some(&point) = order.get(next) {
+            for &step in &after[point] {
+                let to = steps[step].to;
+                missing[to] -= 1;
+                if missing[to] == 0 {
+                    order.push(to);
+                }
+            }
+            next += 1;
+        }
+        order.extend((0..points).filter(|&point| missing[point] > 0));
+        Self { steps, deadlines, before, after, order, origin: quick.origin.index() }
+    }
+
+    /// The drives for which a deadline after them may be missed, because they set out only after what it counts from.
+    fn late(&self, drives: &[Drive]) -> BTreeSet<OccurrenceId> {
+        let mut late = BTreeSet::new();
+        let is_after_a_drive = self.reached(drives.iter().map(|drive| drive.on_the_way), false);
+        let earliest = self.times(self.origin, false, |step| step.least);
+        let latest = self.times(self.origin, false, |step| step.most);
+        for deadline in &self.deadlines {
+            let Deadline { since, event, within } = *deadline;
+            // First what is quick to see.
+            let is_met = || match (earliest[since], latest[event]) {
+                (Some(since), Some(event)) => event.saturating_sub(since) <= within,
+                _ => false,
+            };
+            if !is_after_a_drive[event] || is_met() || self.is_met(deadline, earliest[since]) {
+                continue;
+            }
+            let (before_event, before_since) = (self.reached([event], true), self.reached([since], true));
+            let may_be_late = |drive: &&Drive| {
+                let has_set_out = before_since[drive.start] && drive.start != since;
+                before_event[drive.on_the_way] && !has_set_out
+            };
+            late.extend(drives.iter().filter(may_be_late).map(|drive| drive.id));
+        }
+        late
+    }
+
+    /// Whether a deadline is met whatever anything takes, as far as this shows it. `earliest` is when the event that it
+    /// counts from can happen.
+    ///
+    /// An event comes right after one of those that it follows, so it is at most as far from `since` as the farthest of
+    /// these, and what they take; and it is never farther than what there is at least between it and a later `since`.
+    fn is_met(&self, deadline: &Deadline, earliest: Option<i64>) -> bool {
+        let until_since = self.times(deadline.since, true, |step| step.least);
+        let mut farthest: Vec<Option<i64>> = vec![None; self.before.len()];
+        farthest[self.origin] = earliest.map(|earliest| -earliest);
+        for _ in 0..=self.order.len() {
+            let mut has_changed = false;
+            for &point in &self.order {
+                let steps = self.before[point].iter().map(|&step| &self.steps[step]);
+                let by_steps =
+                    steps.filter_map(|step| Some(farthest[step.from]?.saturating_add(step.most))).max();
+                let at_most = until_since[point].map(|until_since| -until_since);
+                let found = match (by_steps, at_most) {
+                    (Some(by_steps), Some(at_most)) => Some(by_steps.min(at_most)),
+                    (by_steps, _) => by_steps,
+                };
+                if found > farthest[point] {
+                    (farthest[point], has_changed) = (found, true);
+                }
+            }
+            if !has_changed {
+                break;
+            }
+        }
+        farthest[deadline.event].is_some_and(|event| event <= deadline.within)
+    }
+
+    /// How long after one point each other comes, or how long before it, by the longest way along the steps.
+    fn times(&self, from: usize, is_before: bool, length: impl Fn(&Step) -> i64) -> Vec<Option<i64>> {
+        let mut times: Vec<Option<i64>> = vec![None; self.before.len()];
+        times[from] = Some(0);
+        for _ in 0..=self.order.len() {
+            let mut has_changed = false;
+            for place in 0..self.order.len() {
+                let place = if is_before { self.order.len() - 1 - place } else { place };
+                let point = self.order[place];
+                let Some(time) = times[point] else { continue };
+                let next = if is_before { &self.before[point] } else { &self.after[point] };
+                for step in next.iter().map(|&step| &self.steps[step]) {
+                    let to = if is_before { step.from } else { step.to };
+                    let at = Some(time.saturating_add(length(step)));
+                    if at > times[to] {
+                        (times[to], has_changed) = (at, true);
+                    }
+                }
+            }
+            if !has_changed {
+                break;
+            }
+        }
+        times
+    }
+
+    /// The points that come after some of these, or before them, and these.
+    fn reached(&self, from: impl IntoIterator<Item = usize>, is_before: bool) -> Vec<bool> {
+        let mut reached = vec![false; self.before.len()];
+        let mut open: Vec<usize> = from.into_iter().collect();
+        while let Some(point) = open.pop() {
+            if !std::mem::replace(&mut reached[point], true) {
+                let next = if is_before { &self.before[point] } else { &self.after[point] };
+                let ends = next.iter().map(|&step| &self.steps[step]);
+                open.extend(ends.map(|step| if is_before { step.from } else { step.to }));
+            }
+        }
+        reached
+    }
+}
