@@ -36,6 +36,17 @@ pub enum Ends {
     Never(String),
 }
 
+impl Ends {
+    /// How long it takes at least; `None` if it never ends.
+    pub(crate) const fn least(&self) -> Option<Time> {
+        match self {
+            Self::AsPlanned => Some(Time::ZERO),
+            Self::After(duration) | Self::NotBefore(duration) => Some(*duration),
+            Self::Never(_) => None,
+        }
+    }
+}
+
 /// That two vehicles touch, which ends a run: whatever its plan allows for, that is not among it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contact {

@@ -697,16 +697,28 @@ impl Run<'_> {
         if self.adversary.is_some() && self.is_natures(occurrence.end) {
             return Ok(());
         }
-        if !is_start || self.world.duration(&self.stage.network, occurrence).map_err(too_late)?.is_some() {
+        if !is_start {
             return Ok(());
+        }
+        if let Some(given) = self.world.duration(&self.stage.network, occurrence).map_err(too_late)? {
+            return self.allow(event.occurrence, Some(given));
         }
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
         self.revise()?;
         let drives = matches!(execution.ends, Ends::NotBefore(_));
+        let least = execution.ends.least();
         self.expect(event.occurrence, execution);
+        self.allow(event.occurrence, least)?;
         if drives { self.note_arrivals() } else { Ok(()) }
+    }
+
+    /// Lets an activity under way take this long, or never end, as far as the mission itself does not forbid it.
+    fn allow(&mut self, occurrence: OccurrenceId, duration: Option<Time>) -> Result<(), PlanError> {
+        let Some(stage) = self.stage.with_duration(occurrence, duration)? else { return Ok(()) };
+        self.stage = stage;
+        self.restart_frontier()
     }
 
     /// Asks those under way when they arrive.
@@ -746,6 +758,7 @@ impl Run<'_> {
             let since = now.checked_sub(started).ok_or(Overflow).map_err(too_late)?;
             execution.extra_meters.retain(|&(after, _)| after > since);
             self.expect_meters(occurrence, started, &execution).map_err(too_late)?;
+            self.allow(occurrence, execution.ends.least())?;
             self.expect(occurrence, execution);
         }
         if let Some(readings) = revision.readings {

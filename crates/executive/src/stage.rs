@@ -1,5 +1,6 @@
 //! One plan under execution, between two replans.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -26,6 +27,10 @@ pub struct Stage {
     pub(crate) natures: BTreeMap<NodeId, Vec<ArcId>>,
     /// The vertices of paths.
     pub(crate) guides: BTreeMap<NodeId, Guide>,
+    /// How long traverses take at most at their least speeds, of those that are to keep that.
+    most: BTreeMap<OccurrenceId, Time>,
+    /// The times that are not the network's own.
+    grid: Arc<[Time]>,
     /// When each node happened.
     pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
@@ -41,10 +46,19 @@ pub struct Stage {
 impl Stage {
     /// Makes `plan` ready. `grid` are the times, or their common divisors, that are not the network's own.
     pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
-        let mut made = PlanNetwork::guided(&network, &plan)?;
-        made.refine_for(&network, &plan, grid)?;
-        let is_natures = plan.has_natures_choice(&network);
-        let dispatched = if is_natures { Arc::new(guided(&network)) } else { Arc::clone(&network) };
+        let most = greatest_durations(&network, &plan)?;
+        Self::of(network, plan, most, grid.into())
+    }
+
+    fn of(
+        network: Arc<Network>,
+        plan: Plan,
+        most: BTreeMap<OccurrenceId, Time>,
+        grid: Arc<[Time]>,
+    ) -> Result<Self, PlanError> {
+        let dispatched = guided(&network, &most);
+        let mut made = PlanNetwork::new(&dispatched, &plan)?;
+        made.refine_for(&dispatched, &plan, &grid)?;
         let dispatch = Dispatch::new(&dispatched, &plan, &made)?;
         let ranks = ranks(&network, &plan, &made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
@@ -73,12 +87,35 @@ impl Stage {
             dispatch,
             natures,
             guides,
+            most,
+            grid,
             times,
             from,
             ranks,
             before,
             after,
         })
+    }
+
+    /// The same where a traverse under way takes this long, even if that is longer than at its least speed; `None` if it
+    /// is not. A traverse without a duration never ends.
+    pub(crate) fn with_duration(
+        &self,
+        traverse: OccurrenceId,
+        duration: Option<Time>,
+    ) -> Result<Option<Self>, PlanError> {
+        let Some(&most) = self.most.get(&traverse) else { return Ok(None) };
+        if duration.is_some_and(|duration| duration <= most) {
+            return Ok(None);
+        }
+        let mut most = self.most.clone();
+        most.remove(&traverse);
+        let mut stage = Self::of(Arc::clone(&self.network), self.plan.clone(), most, Arc::clone(&self.grid))?;
+        stage.from = self.from;
+        let past = self.times.iter().enumerate();
+        let past = past.filter_map(|(index, &time)| Some((time?, NodeId::from_index(index)))).collect();
+        // It allows more than before.
+        Ok(stage.enter_past(past).is_ok().then_some(stage))
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -221,13 +258,37 @@ impl Guide {
     }
 }
 
-/// A network in which the vertices of paths have no latest times of their own.
-fn guided(network: &Network) -> Network {
+/// How long the traverses of a plan take at most at their least speeds, of those that may not stop.
+fn greatest_durations(network: &Network, plan: &Plan) -> Result<BTreeMap<OccurrenceId, Time>, PlanError> {
+    let mut greatest: BTreeMap<OccurrenceId, Bound> = BTreeMap::new();
+    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        if let (ArcKind::Path, Some(traverse)) = (arc.kind, arc.occurrence) {
+            let all = greatest.entry(traverse).or_insert(Bound::ZERO);
+            *all = all.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
+        }
+    }
+    Ok(greatest.into_iter().filter_map(|(traverse, most)| Some((traverse, most.finite()?))).collect())
+}
+
+/// A network in which the vertices of paths have no latest times of their own, but the traverses take at most this long.
+fn guided<'network>(
+    network: &'network Network,
+    most: &BTreeMap<OccurrenceId, Time>,
+) -> Cow<'network, Network> {
+    if network.arcs.iter().all(|arc| arc.kind != ArcKind::Path) {
+        return Cow::Borrowed(network);
+    }
     let mut network = network.clone();
     for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
         arc.upper = Bound::Infinite;
     }
-    network
+    for (traverse, &most) in most {
+        if let Some(whole) = network.occurrences[traverse.index()].arc {
+            let whole = &mut network.arcs[whole.index()];
+            whole.upper = whole.upper.min(Bound::Finite(most));
+        }
+    }
+    Cow::Owned(network)
 }
 
 /// Arcs lead forwards in time, but for those by which facts hold the past, which lead back to the start, and for bounds between

@@ -109,6 +109,14 @@ struct Before {
     stand: Stand,
     /// What was seen by then that is not on the map.
     seen_m: Vec<Point2<f64>>,
+    /// The ways of others: of those under way what is left of theirs, of the rest those that they take next.
+    lanes: Vec<Lane>,
+}
+
+/// The way of a vehicle, with the radius of its body in meters.
+struct Lane {
+    points_m: Vec<Point2<f64>>,
+    radius_m: f64,
 }
 
 /// Where vehicles are that have driven, with their headings.
@@ -202,6 +210,39 @@ impl<'run> Driving<'run> {
         let parked = starts.filter(|(vehicle, _)| !stand.contains_key(vehicle));
         let parked = parked.map(|(vehicle, start)| (vehicle, self.start_m(vehicle, start)));
         stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
+    }
+
+    /// The ways of vehicles that do not drive with these and are as high above the ground as one of them.
+    fn lanes(&self, drive: &Drive, now: f64) -> Vec<Lane> {
+        let world = &self.problem.program.world;
+        let is_in_its_way = |vehicle: u32| {
+            let flies = vehicle::flies(world, vehicle);
+            !drive.vehicles.contains(&vehicle)
+                && drive.vehicles.iter().any(|&own| vehicle::flies(world, own) == flies)
+        };
+        let mut lanes: BTreeMap<u32, Vec<Point2<f64>>> = BTreeMap::new();
+        for driven in self.drives.iter().flat_map(|drive| &drive.vehicles) {
+            let left = driven.frames.iter().filter(|frame| frame.time > now).map(|frame| frame.position_m);
+            let left: Vec<Point2<f64>> = left.collect();
+            if !left.is_empty() && is_in_its_way(driven.vehicle) {
+                lanes.insert(driven.vehicle, left);
+            }
+        }
+        let courses = self.courses.borrow();
+        let has_departed =
+            |occurrence: OccurrenceId| self.drives.iter().any(|drive| drive.occurrence == occurrence);
+        let mut next: Vec<&Drive> = courses.known.values().map(|course| &course.drive).collect();
+        next.retain(|drive| !has_departed(drive.occurrence));
+        next.sort_by_key(|drive| drive.start);
+        for (vehicle, track) in
+            next.iter().flat_map(|drive| drive.vehicles.iter().zip(driving::tracks_m(drive)))
+        {
+            if is_in_its_way(*vehicle) {
+                lanes.entry(*vehicle).or_insert(track.points_m);
+            }
+        }
+        let lane = |(vehicle, points_m)| Lane { points_m, radius_m: vehicle::radius_m(world, vehicle) };
+        lanes.into_iter().map(lane).collect()
     }
 
     /// Where a vehicle is that has not driven yet: where its first drive starts, in its place of the formation.
@@ -406,7 +447,8 @@ impl ActivityExecutor for Driving<'_> {
             }
         }
         let seen_m = self.seen.known_at(start.to_f64());
-        let before = Before { stand: self.stand.clone(), seen_m };
+        let lanes = self.lanes(&course.drive, start.to_f64());
+        let before = Before { stand: self.stand.clone(), seen_m, lanes };
         let driven = self.driven(network, &course, (start, &before))?;
         let turn = self.departed.iter().map(|departed| departed.turn + 1).max().unwrap_or(0);
         self.departed.push(Departed { course, before, turn });

@@ -20,6 +20,17 @@ use super::{
     ChoiceReview, ConflictReview, EventReview, Fate, Line, LinkReview, Status, TimeRange, TraverseReview,
 };
 
+/// How the line of a drive ends for which the plan may not leave enough time.
+const LATE: &str = "may make the plan late";
+
+/// How the line of a drive ends that other vehicles may hold up.
+const IN_THE_WAY: &str = "may be in its way";
+
+/// Whether the line of a drive says that the plan may be late because of it.
+pub(super) fn may_be_late(line: &Line) -> bool {
+    [LATE, IN_THE_WAY].iter().any(|reason| line.text.contains(reason))
+}
+
 /// What the lines about a plan are made from.
 pub(super) struct PlanLines<'input> {
     snapshot: &'input Snapshot,
@@ -399,7 +410,7 @@ impl<'input> PlanLines<'input> {
                 format!("; slow driving, up to {most:.1} {}, may make the plan late", unit(self.snapshot));
         }
         if !others.is_empty() {
-            driving.push_str(&format!("; {} may be in its way", others.join(", ")));
+            driving.push_str(&format!("; {} {IN_THE_WAY}", others.join(", ")));
         }
         let text = format!(
             "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",

@@ -17,7 +17,7 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
-use super::{Before, Course, DriveFrame, Driving, SimulatedVehicle};
+use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle};
 
 /// Frames are kept this far apart, in meters and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -50,6 +50,8 @@ const BESIDE_M: f64 = 0.3;
 const KNOWN_M: f64 = 0.9;
 /// What sonars hear continues the map from this near on, in meters.
 const HEARD_M: f64 = 1.5;
+/// How finely the ways of others are put on a map, in meters.
+const LANE_STEP_M: f64 = 0.5;
 /// Meters beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
 
@@ -144,6 +146,8 @@ pub(super) struct Trip<'a> {
     pub(super) least_clearance_m: f64,
     /// What others had seen when it started, and what is seen on the way.
     known: Vec<Point2<f64>>,
+    /// The ways of others, which another way keeps out of where it can.
+    lanes: &'a [Lane],
     pub(super) seen: SeenMap,
     /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
@@ -156,7 +160,7 @@ impl<'a> Trip<'a> {
         course: &'a Course,
         tracks: Vec<Path>,
         network: &Network,
-        (start, before): (Time, &Before),
+        (start, before): (Time, &'a Before),
     ) -> Self {
         let world = &driving.problem.program.world;
         let unit_s = driving.problem.program.options.time_unit.seconds() as f64;
@@ -294,6 +298,7 @@ impl<'a> Trip<'a> {
             arrived_m: None,
             least_clearance_m: f64::INFINITY,
             known: if flies.first() == Some(&true) { Vec::new() } else { before.seen_m.clone() },
+            lanes: &before.lanes,
             flies,
             seen: SeenMap::default(),
             leg_ends_m: course.leg_ends_m.clone(),
@@ -472,7 +477,8 @@ impl<'a> Trip<'a> {
             shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
         let rooms_m = [0.3, model.margin_m, 0.0];
-        let spaces = [shared, occupancy].map(|it| ConfigurationSpace::new(it, model.circumradius_m));
+        let apart = self.apart_from_others(&shared);
+        let spaces = [apart, shared, occupancy].map(|it| ConfigurationSpace::new(it, model.circumradius_m));
         let found = rests_m.into_iter().find_map(|rest_m| {
             let after = rest_of(&path, path.length_m() - rest_m);
             let &goal_m =
@@ -495,6 +501,22 @@ impl<'a> Trip<'a> {
         ));
         self.send(vehicle, way);
         Ok(())
+    }
+
+    /// A map on which nothing else comes where others drive.
+    fn apart_from_others(&self, occupancy: &Occupancy) -> Occupancy {
+        let mut occupancy = occupancy.clone();
+        for lane in self.lanes {
+            let way = Path::new(lane.points_m.clone());
+            let steps = (way.length_m() / LANE_STEP_M).ceil() as u32;
+            for step in 0..=steps {
+                let along_m = (f64::from(step) * LANE_STEP_M).min(way.length_m());
+                let Some((center_m, _)) = way.point_at(along_m) else { continue };
+                let radius_m = lane.radius_m + BESIDE_M;
+                occupancy.mark(&Obstacle::Circle { center_m, radius_m }, CellState::Obstacle);
+            }
+        }
+        occupancy
     }
 
     /// Sends a vehicle along another way, and the others after the leader.
@@ -522,7 +544,8 @@ impl<'a> Trip<'a> {
         for &center_m in &self.known {
             occupancy.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
-        let space = ConfigurationSpace::new(occupancy, model.radius_m());
+        let spaces = [self.apart_from_others(&occupancy), occupancy]
+            .map(|it| ConfigurationSpace::new(it, model.radius_m()));
         let (mut points, mut ends_m, mut from_m) = (Vec::new(), Vec::new(), 0.0);
         let mut is_new = false;
         let length_m = path.length_m();
@@ -533,7 +556,8 @@ impl<'a> Trip<'a> {
             let mut piece = rest_of(&before, from_m);
             if let (true, Some(&start_m), Some(&goal_m)) =
                 (is_blocked(&piece, &self.known, reach), piece.first(), piece.last())
-                && let Some(way) = way_between(&space, [0.0, 0.1], start_m, goal_m, model, 0)
+                && let Some(way) =
+                    spaces.iter().find_map(|space| way_between(space, [0.0, 0.1], start_m, goal_m, model, 0))
             {
                 piece = way.points_m;
                 is_new = true;

@@ -1,6 +1,7 @@
 //! What a plan promises of its drives is what undisturbed runs do: pace, places, meters, and room between vehicles.
 
-use executive::{Ending, Happening, Script};
+use exact::{Rational, Time};
+use executive::{Disturbance, Ending, Happening, Script};
 use kirk::Options;
 use mission::execution;
 use mission::planning::Planned;
@@ -259,4 +260,54 @@ fn a_vehicle_that_needs_longer_than_its_path_is_waited_for() {
         let execution = executed(TURNS, seed);
         assert_eq!(execution.ending, Ending::Finished, "seed {seed}: {:?}", violations(&execution));
     }
+}
+
+/// The least speed of a vehicle that may not stop says how long it takes at most, so it sets out only when that is in time.
+#[test]
+fn a_vehicle_that_may_not_stop_sets_out_no_sooner_than_it_has_to() {
+    let source = "location A (0, 0); location B (30, 0); vehicle Rover : ATRV at A; resource Link;
+        primitive Drive(to)[0,200] moves Rover speed (0.1, 0.5); primitive Walk() contingent [2,6];
+        primitive Hold()[10,10] uses Link; primitive Look()[1,2] uses Link;
+        scenario S[0,300] = { { delay; Drive(B); Look() }, Hold(), WALK }";
+    for walk in ["delay", "{ Walk(); delay }"] {
+        let source = source.replace("WALK", walk);
+        let execution = executed(&source, 0);
+        assert_eq!((execution.ending, violations(&execution)), (Ending::Finished, Vec::new()), "{walk}");
+        let time = |event: &str| {
+            let is_it =
+                |happening: &Happening| matches!(happening, Happening::Executed { name } if name == event);
+            execution.log.iter().find(|entry| is_it(&entry.happening)).expect(event).time.to_f64()
+        };
+        assert!(time("Drive#1.end") - time("Drive#1.start") <= 5.0, "30 m at 0.1 m/s: {:?}", execution.log);
+        // What slows it down is not its plan's fault, and no other bound is at stake.
+        let slow = Disturbance::VehicleSlow {
+            vehicle: "Rover".into(),
+            factor: Rational::new(3, 16).expect("a share"),
+            from: Time::ZERO,
+            until: Time::from(100),
+        };
+        let execution = Mission::read(&source).executed(0, &[slow]);
+        assert_eq!((execution.ending, violations(&execution)), (Ending::Finished, Vec::new()), "{walk}");
+        assert!(execution.drives[0].duration.is_some_and(|duration| duration > Time::from(5)));
+    }
+}
+
+/// Both go around a rock that they saw before. On the same side of it they would meet.
+#[test]
+fn who_takes_another_path_keeps_out_of_the_way_of_others() {
+    let source = "terrain \"tai-plain\" cell 0.6 origin (0, 0); location P0 (20, 22); location P1 (58, 34);
+        location P5 (60, 81); vehicle V0 : ATRV at P0; vehicle V1 : ATRV at P1; resource Link;
+        primitive Drive(r, to)[0,200] moves r speed (0.1, 0.4) kinodynamic;
+        primitive Slow(r, to) contingent [4,24] moves r speed (0.1, 0.4) kinodynamic;
+        primitive Look(r, at) contingent [2,9] requires r.at=at uses Link;
+        scenario S[0,200] = { { delay[1,4]; Drive(V0, P5); delay[0,5]; Slow(V0, P0); delay[0,5]; delay; Drive(V0, P0);
+          delay[0,2]; Look(V0, P0) }, { delay; Drive(V1, P0); delay; Look(V1, P0); delay[0,5]; Drive(V1, P5); delay;
+          Look(V1, P5) } }";
+    let nature = [("Slow#1", 4), ("Look#1", 2), ("Look#2", 2), ("Look#3", 2)];
+    let nature = nature.map(|(name, time)| (name.into(), Time::from(time))).into_iter().collect();
+    let script = Script { nature, ..Script::default() };
+    let ran = Mission::read(source).with_plan((Options::default(), 0), |problem, planned, grounds, paths| {
+        execution::execute(problem, &planned, &script, grounds, paths).expect("a plan").expect("times fit")
+    });
+    assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
 }

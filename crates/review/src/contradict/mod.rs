@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Time;
-use executive::{Ending, Entry, Script};
+use executive::{Ending, Entry, Happening, Script};
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -25,7 +25,7 @@ use self::promise::Promise;
 use self::runs::Runs;
 use self::schedules::{Made, Schedules};
 use super::record::LineKey;
-use super::{Review, Section, Status};
+use super::{Review, Section, Status, plan_lines};
 
 /// A line that has passed, how it was tried, and the counterexample if one was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -131,6 +131,8 @@ pub struct Trial {
     num_runs: u64,
     /// Whether other plans were looked for.
     has_plans: bool,
+    /// Whether a line says that the plan may be late. What comes after a violation then is no more what the others promise.
+    may_be_late: bool,
 }
 
 /// A run of a plan, as it is held against lines.
@@ -183,6 +185,7 @@ impl Trial {
             num_schedules: 0,
             num_runs: 0,
             has_plans: false,
+            may_be_late: review.traverses.iter().any(|it| plan_lines::may_be_late(&it.line)),
         })
     }
 
@@ -286,10 +289,18 @@ impl Trial {
 
     /// Holds an undisturbed run of the plan against the lines without a counterexample; `script` made it.
     pub fn try_run(&mut self, script: &Script, run: &Observed<'_>) {
+        let is_violation = |entry: &Entry| matches!(entry.happening, Happening::Violation { .. });
+        let kept = match run.log.iter().position(is_violation) {
+            Some(violation) if self.may_be_late => {
+                Observed { log: &run.log[..=violation], ending: Ending::Stopped, sight: run.sight }
+            }
+            _ => Observed { ..*run },
+        };
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
                 continue;
             }
+            let run = if promise.is_of_whole_runs() { run } else { &kept };
             let Some(found) = promise.broken_by_run(run) else { continue };
             tried.runs += 1;
             tried.counterexample = found.map(|text| Counterexample { text, script: script.clone() });

@@ -289,6 +289,11 @@ impl Promise {
         }
     }
 
+    /// Whether it says that nothing goes wrong in a run, and so still holds or not after something has.
+    pub(super) const fn is_of_whole_runs(&self) -> bool {
+        matches!(self, Self::Runs | Self::NoContact)
+    }
+
     /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it.
     #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
     pub(super) fn broken_by_run(&self, run: &Observed<'_>) -> Option<Option<String>> {
