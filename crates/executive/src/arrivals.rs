@@ -39,9 +39,7 @@ impl Arrivals {
             let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", described.name) };
             let at = started.checked_add(*duration).ok_or(Overflow).map_err(too_late)?;
             let at = stage.made.scale().ticks(at).map_err(too_late)?;
-            let mut after = Vec::new();
-            stage.made.stn.distances_to(end, &mut after)?;
-            arrivals.push(Arrival { end, at, after });
+            arrivals.push(Arrival { end, at, after: stage.latest_after_each(end)? });
         }
         Ok(Self(arrivals))
     }

@@ -19,6 +19,9 @@ pub struct Stage {
     pub(crate) network: Arc<Network>,
     pub(crate) plan: Plan,
     pub(crate) made: PlanNetwork,
+    /// The same if the environment ends all as soon as it may, which leaves drives the least time; `None` where it chooses
+    /// nothing.
+    hurried: Option<PlanNetwork>,
     /// What its events do to states and levels.
     pub(crate) effects: Effects,
     pub(crate) dispatch: Dispatch,
@@ -59,6 +62,17 @@ impl Stage {
         let dispatched = guided(&network, &most);
         let mut made = PlanNetwork::new(&dispatched, &plan)?;
         made.refine_for(&dispatched, &plan, &grid)?;
+        let hurried = if plan.has_natures_choice(&network) {
+            let network = hurried(&dispatched);
+            // A plan that cannot be kept then is not controllable.
+            let mut hurried = PlanNetwork::new(&network, &plan).ok();
+            if let Some(hurried) = &mut hurried {
+                hurried.refine_for(&network, &plan, &grid)?;
+            }
+            hurried
+        } else {
+            None
+        };
         let dispatch = Dispatch::new(&dispatched, &plan, &made)?;
         let ranks = ranks(&network, &plan, &made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
@@ -83,6 +97,7 @@ impl Stage {
             network,
             plan,
             made,
+            hurried,
             effects,
             dispatch,
             natures,
@@ -116,6 +131,13 @@ impl Stage {
         let past = past.filter_map(|(index, &time)| Some((time?, NodeId::from_index(index)))).collect();
         // It allows more than before.
         Ok(stage.enter_past(past).is_ok().then_some(stage))
+    }
+
+    /// For each point how many ticks after it another one comes at the latest, as far as nothing else is sure.
+    pub(crate) fn latest_after_each(&mut self, point: PointId) -> Result<Vec<i64>, PlanError> {
+        let mut after = Vec::new();
+        self.hurried.as_mut().unwrap_or(&mut self.made).stn.distances_to(point, &mut after)?;
+        Ok(after)
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -289,6 +311,15 @@ fn guided<'network>(
         }
     }
     Cow::Owned(network)
+}
+
+/// A network in which the environment ends all as soon as it may.
+fn hurried(network: &Network) -> Network {
+    let mut network = network.clone();
+    for arc in network.arcs.iter_mut().filter(|arc| arc.is_contingent) {
+        arc.upper = Bound::Finite(arc.lower);
+    }
+    network
 }
 
 /// Arcs lead forwards in time, but for those by which facts hold the past, which lead back to the start, and for bounds between

@@ -538,12 +538,12 @@ mod tests {
     use crate::Grounds;
     use crate::traverse::Paths;
 
-    /// Two rovers that drive to one place over ground with rocks that their map does not show.
-    const SOURCE: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
-location P0 (17, 27); location P1 (62, 26); location P2 (30, 67); location P4 (40, 49);
-vehicle V0 : ATRV-Jr at P0; vehicle V1 : ATRV-Jr at P1;
+    /// The second rover parks on the way of the first one.
+    const SOURCE: &str = "terrain \"flat\" cell 0.6;
+location WEST (20, 20); location EAST (60, 20); location NORTH (40, 26); location MIDDLE (40, 20);
+vehicle V0 : ATRV-Jr at WEST; vehicle V1 : ATRV-Jr at NORTH;
 primitive Drive(r, to)[0,200] moves r speed (0.005, 0.3);
-scenario S[0,600] = { Drive(V0, P2), Drive(V1, P2) }";
+scenario S[0,600] = { Drive(V0, EAST), { delay; Drive(V1, MIDDLE) } }";
 
     /// A traverse that is driven again for one that starts later does what it did until then.
     #[test]

@@ -172,6 +172,11 @@ impl Convoy {
         self.members.iter().all(|member| member.has_arrived)
     }
 
+    /// Whether a vehicle is where it stays.
+    pub fn is_there(&self, vehicle: usize) -> bool {
+        self.members.get(vehicle).is_some_and(|member| member.has_arrived)
+    }
+
     /// Meters that the leader still has to go.
     pub fn remaining_m(&self) -> f64 {
         self.members.first().map_or(0.0, Member::remaining_m)

@@ -124,13 +124,13 @@ const MAX_STEP_S: f64 = 20.0;
 const MORE_SHARE: f64 = 0.04;
 const MORE_M: f64 = 1.5;
 const MORE_FOR_FOLLOWER_M: f64 = 2.0;
-const DETOUR_M: f64 = 10.0;
+const DETOUR_M: f64 = 20.0;
 const DETOUR_FOR_FOLLOWER_M: f64 = 5.0;
 /// What it needs more time than its path, as a share of it, in seconds, and in meters that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
-const LONGER_S: f64 = 15.0;
+const LONGER_S: f64 = 20.0;
 const LONGER_FOR_FOLLOWER_M: f64 = 10.0;
-const AROUND_ROCKS_M: f64 = 20.0;
+const AROUND_ROCKS_M: f64 = 30.0;
 const LESS_SHARE: f64 = 0.01;
 const LESS_M: f64 = 2.5;
 const LESS_FOR_FOLLOWER_M: f64 = 1.5;

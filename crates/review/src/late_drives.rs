@@ -6,10 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use controllability::{PlanNetwork, Source, plan_network};
 use exact::{Bound, Overflow, Scale, Time};
 use snapshot::Snapshot;
+use snapshot::vehicle::{flies, model_of, moving};
 use stn::PointId;
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
-
-use super::plan_lines::driven_within_s;
 
 /// The drives that a run of the plan may not be able to wait for, if they take as long as drivers were measured to take.
 ///
@@ -52,6 +51,21 @@ pub(super) fn late_drives(snapshot: &Snapshot, network: &Network, plan: &Plan) -
         }
     }
     late
+}
+
+/// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
+pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: &snapshot::Traverse) -> f64 {
+    let program = &snapshot.program;
+    let unit_s = program.options.time_unit.seconds() as f64;
+    let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+    let occurrence = &network.occurrences[traverse.occurrence.index()];
+    let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
+    let models = traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
+    let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
+    let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
+    let drives = traverse.vehicles.iter().any(|&vehicle| !flies(&program.world, vehicle));
+    let leaves_out_rocks = drives && program.world.terrain.is_some();
+    motion::driven_within_s(least * unit_s, speed_mps, traverse.company as usize, leaves_out_rocks)
 }
 
 /// The drives that may be late where each takes `longer` than planned by so much.
@@ -145,20 +159,18 @@ struct Execution {
     origin: usize,
 }
 
-/// One event follows another.
+/// One event follows another, by this many ticks.
 struct Step {
     from: usize,
     to: usize,
-    /// In ticks.
     least: i64,
     most: i64,
 }
 
-/// An event has to come no later than this after another.
+/// An event has to come no later than this many ticks after another.
 struct Deadline {
     since: usize,
     event: usize,
-    /// In ticks.
     within: i64,
 }
 
@@ -169,8 +181,13 @@ impl Execution {
         let (mut steps, mut deadlines) = (Vec::new(), Vec::new());
         for (least, most) in quick.network.edges().iter().zip(slow.network.edges()) {
             let (from, to) = (least.from.index(), least.to.index());
+            let link = quick.network.link_ending_at(least.from).map(|link| quick.network.link(link));
             if least.weight > 0 {
                 deadlines.push(Deadline { since: from, event: to, within: least.weight });
+            } else if let Some(link) = link {
+                // The environment waits for nothing.
+                let within = link.lower + least.weight;
+                deadlines.push(Deadline { since: link.activation.index(), event: to, within });
             } else {
                 steps.push(Step { from: to, to: from, least: -least.weight, most: -most.weight });
             }

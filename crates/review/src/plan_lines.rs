@@ -6,13 +6,14 @@ use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
 use rmpl::program::{Change, LabelMode, LocationDecl, VehicleDecl, World};
-use snapshot::vehicle::{flies, is_way, model_of, moving};
+use snapshot::vehicle::{is_way, model_of, moving};
 use snapshot::{Planning, Snapshot, joined, standing};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
 
 use super::alternatives::{Alternative, Examiner};
 use super::demand_lines::{DemandLines, status_by_checker};
 use super::distances::Distances;
+use super::late_drives::driven_within_s;
 use super::lines::{Places, unit};
 use super::overlaps::overlaps;
 use super::schedule::slack;
@@ -590,21 +591,6 @@ pub(super) fn declared_durations<'network>(
         (is_selected && !network.is_uncertain(id)).then_some((occurrence, arc.lower, arc.upper))
     });
     declared.collect()
-}
-
-/// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
-pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: &snapshot::Traverse) -> f64 {
-    let program = &snapshot.program;
-    let unit_s = program.options.time_unit.seconds() as f64;
-    let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
-    let occurrence = &network.occurrences[traverse.occurrence.index()];
-    let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
-    let models = traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
-    let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
-    let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
-    let drives = traverse.vehicles.iter().any(|&vehicle| !flies(&program.world, vehicle));
-    let leaves_out_rocks = drives && program.world.terrain.is_some();
-    motion::driven_within_s(least * unit_s, speed_mps, traverse.company as usize, leaves_out_rocks)
 }
 
 /// How many meters beside its last location a traverse ends, if it does, and that location.

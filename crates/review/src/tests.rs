@@ -350,11 +350,11 @@ fn a_drive_that_others_cannot_wait_for_needs_attention() {
         );
         let review = reviewed(&source);
         let line = &review.traverses.first().expect("a drive").line;
-        let is_late = line.text.ends_with("; slow driving, up to 1.3 min, may make the plan late");
+        let is_late = line.text.ends_with("; slow driving, up to 1.4 min, may make the plan late");
         assert_eq!(line.status == Status::Attention, is_late, "{}", line.text);
         line.status
     };
-    // 30 m at 0.5 m/s are one minute, and may take up to 1.31 min.
+    // 30 m at 0.5 m/s are one minute, and may take up to 1.39 min.
     let cases = [
         // The whole plan has to wait, together with what the environment chooses.
         ("{ { { Walk(); Free(B) } [0,5.2] }; delay }", Status::Attention),

@@ -342,7 +342,8 @@ impl<'a> Trip<'a> {
             self.note_clearance();
             self.put_on_map(&steps, now);
             for (vehicle, (event, _)) in steps.iter().enumerate() {
-                if matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. }) {
+                let is_off = matches!(event, DriveEvent::Blocked { .. } | DriveEvent::OffCorridor { .. });
+                if is_off && !self.convoy.is_there(vehicle) {
                     self.reroute(vehicle)?;
                 }
             }

@@ -262,6 +262,30 @@ fn a_vehicle_that_needs_longer_than_its_path_is_waited_for() {
     }
 }
 
+/// What the environment ends as soon as it may is no longer a way to wait for a vehicle.
+#[test]
+fn what_ends_when_it_will_starts_so_late_that_who_is_under_way_arrives() {
+    let source = "location P0 (20, 26); location P1 (60, 28); location P3 (72, 66); location P4 (41, 52);
+        vehicle V0 : ATRV-Jr at P0; vehicle V1 : ATRV-Jr at P1;
+        primitive Drive(r, to)[0,200] moves r speed (0.05, 0.3); primitive Walk() contingent [1,6];
+        scenario S[0,60] = { Drive(V0, P3), { delay; Walk(); Drive(V1, P4) } }";
+    let nature = [("Walk#1".into(), Time::from(1))].into_iter().collect();
+    let script = Script { nature, ..Script::default() };
+    for seed in 0..4 {
+        let execution = Mission::read(source).with_plan(
+            (Options::default(), seed),
+            |problem, planned, grounds, paths| {
+                execution::execute(problem, &planned, &script, grounds, paths)
+                    .expect("a plan")
+                    .expect("times fit")
+            },
+        );
+        let log = &execution.outcome.log;
+        let is_late = log.iter().any(|entry| matches!(entry.happening, Happening::Violation { .. }));
+        assert!(!is_late && execution.outcome.ending == Ending::Finished, "seed {seed}: {log:?}");
+    }
+}
+
 /// The least speed of a vehicle that may not stop says how long it takes at most, so it sets out only when that is in time.
 #[test]
 fn a_vehicle_that_may_not_stop_sets_out_no_sooner_than_it_has_to() {
