@@ -24,24 +24,36 @@ struct Arrival {
 }
 
 impl Arrivals {
-    /// Asks those under way when they arrive.
-    pub(crate) fn ask(
+    /// Of all those under way.
+    pub(crate) fn all(
         stage: &mut Stage,
         executions: &BTreeMap<OccurrenceId, Ends>,
     ) -> Result<Self, PlanError> {
-        let mut arrivals = Vec::new();
-        for (occurrence, ends) in executions {
-            let Ends::NotBefore(duration) = ends else { continue };
-            let described = &stage.network.occurrences[occurrence.index()];
-            let [started, ended] = [described.start, described.end].map(|node| stage.times[node.index()]);
-            let (Some(started), None) = (started, ended) else { continue };
-            let Some(end) = stage.made.point(described.end) else { continue };
-            let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", described.name) };
-            let at = started.checked_add(*duration).ok_or(Overflow).map_err(too_late)?;
-            let at = stage.made.scale().ticks(at).map_err(too_late)?;
-            arrivals.push(Arrival { end, at, after: stage.latest_after_each(end)? });
+        let mut arrivals = Self::default();
+        for (&occurrence, ends) in executions {
+            arrivals.expect(stage, occurrence, ends)?;
         }
-        Ok(Self(arrivals))
+        Ok(arrivals)
+    }
+
+    /// Notes when one that has set out arrives, if it drives.
+    pub(crate) fn expect(
+        &mut self,
+        stage: &mut Stage,
+        occurrence: OccurrenceId,
+        ends: &Ends,
+    ) -> Result<(), PlanError> {
+        let Ends::NotBefore(duration) = ends else { return Ok(()) };
+        let described = &stage.network.occurrences[occurrence.index()];
+        let [started, ended] = [described.start, described.end].map(|node| stage.times[node.index()]);
+        let (Some(started), None) = (started, ended) else { return Ok(()) };
+        let Some(end) = stage.made.point(described.end) else { return Ok(()) };
+        let too_late = |_: Overflow| PlanError::TooLate { event: format!("{}.end", described.name) };
+        let at = started.checked_add(*duration).ok_or(Overflow).map_err(too_late)?;
+        let at = stage.made.scale().ticks(at).map_err(too_late)?;
+        self.0.retain(|arrival| stage.times[stage.made.node(arrival.end).index()].is_none());
+        self.0.push(Arrival { end, at, after: stage.latest_after_each(end)? });
+        Ok(())
     }
 
     /// The earliest time at which a point leaves all those under way the time to arrive.

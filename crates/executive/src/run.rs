@@ -707,11 +707,10 @@ impl Run<'_> {
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
         self.revise()?;
-        let drives = matches!(execution.ends, Ends::NotBefore(_));
-        let least = execution.ends.least();
+        self.allow(event.occurrence, execution.ends.least())?;
+        self.arrivals.expect(&mut self.stage, event.occurrence, &execution.ends)?;
         self.expect(event.occurrence, execution);
-        self.allow(event.occurrence, least)?;
-        if drives { self.note_arrivals() } else { Ok(()) }
+        Ok(())
     }
 
     /// Lets an activity under way take this long, or never end, as far as the mission itself does not forbid it.
@@ -719,12 +718,6 @@ impl Run<'_> {
         let Some(stage) = self.stage.with_duration(occurrence, duration)? else { return Ok(()) };
         self.stage = stage;
         self.restart_frontier()
-    }
-
-    /// Asks those under way when they arrive.
-    fn note_arrivals(&mut self) -> Result<(), PlanError> {
-        self.arrivals = Arrivals::ask(&mut self.stage, &self.executions)?;
-        Ok(())
     }
 
     /// Takes in how an activity will go.
@@ -764,7 +757,8 @@ impl Run<'_> {
         if let Some(readings) = revision.readings {
             self.readings = readings.into();
         }
-        self.note_arrivals()
+        self.arrivals = Arrivals::all(&mut self.stage, &self.executions)?;
+        Ok(())
     }
 
     /// Plans again from now; an answer says why there is no plan.
@@ -815,7 +809,7 @@ impl Run<'_> {
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         self.scheduled.clear();
-        self.note_arrivals()?;
+        self.arrivals = Arrivals::all(&mut self.stage, &self.executions)?;
         self.restart_frontier()?;
         Ok(kept.err().map(|node| {
             format!("the new plan changes {}, which has already happened", self.stage.name(node))
