@@ -1,4 +1,5 @@
-//! When vehicles under way arrive: what would leave them no time for that waits, as long as the plan lets it.
+//! When vehicles under way arrive: what would leave them no time for that waits, as long as the plan lets it. This is for
+//! plans in which the environment chooses nothing. Others are dispatched anew with what drivers say, by [`Stage::expect`].
 
 use std::collections::BTreeMap;
 
@@ -44,6 +45,9 @@ impl Arrivals {
         ends: &Ends,
     ) -> Result<(), PlanError> {
         let Ends::NotBefore(duration) = ends else { return Ok(()) };
+        if stage.dispatch.withstands_nature() {
+            return Ok(());
+        }
         let described = &stage.network.occurrences[occurrence.index()];
         let [started, ended] = [described.start, described.end].map(|node| stage.times[node.index()]);
         let (Some(started), None) = (started, ended) else { return Ok(()) };
@@ -52,7 +56,9 @@ impl Arrivals {
         let at = started.checked_add(*duration).ok_or(Overflow).map_err(too_late)?;
         let at = stage.made.scale().ticks(at).map_err(too_late)?;
         self.0.retain(|arrival| stage.times[stage.made.node(arrival.end).index()].is_none());
-        self.0.push(Arrival { end, at, after: stage.latest_after_each(end)? });
+        let mut after = Vec::new();
+        stage.made.stn.distances_to(end, &mut after)?;
+        self.0.push(Arrival { end, at, after });
         Ok(())
     }
 

@@ -701,23 +701,21 @@ impl Run<'_> {
             return Ok(());
         }
         if let Some(given) = self.world.duration(&self.stage.network, occurrence).map_err(too_late)? {
-            return self.allow(event.occurrence, Some(given));
+            return self.expect_duration(event.occurrence, Some(given));
         }
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
         self.expect_meters(event.occurrence, self.now, &execution).map_err(too_late)?;
         self.revise()?;
-        self.allow(event.occurrence, execution.ends.least())?;
+        self.expect_duration(event.occurrence, execution.ends.least())?;
         self.arrivals.expect(&mut self.stage, event.occurrence, &execution.ends)?;
         self.expect(event.occurrence, execution);
         Ok(())
     }
 
-    /// Lets an activity under way take this long, or never end, as far as the mission itself does not forbid it.
-    fn allow(&mut self, occurrence: OccurrenceId, duration: Option<Time>) -> Result<(), PlanError> {
-        let Some(stage) = self.stage.with_duration(occurrence, duration)? else { return Ok(()) };
-        self.stage = stage;
-        self.restart_frontier()
+    /// Takes in how long an activity under way takes at least, or that it never ends.
+    fn expect_duration(&mut self, occurrence: OccurrenceId, least: Option<Time>) -> Result<(), PlanError> {
+        if self.stage.expect(occurrence, least)? { self.restart_frontier() } else { Ok(()) }
     }
 
     /// Takes in how an activity will go.
@@ -751,7 +749,7 @@ impl Run<'_> {
             let since = now.checked_sub(started).ok_or(Overflow).map_err(too_late)?;
             execution.extra_meters.retain(|&(after, _)| after > since);
             self.expect_meters(occurrence, started, &execution).map_err(too_late)?;
-            self.allow(occurrence, execution.ends.least())?;
+            self.expect_duration(occurrence, execution.ends.least())?;
             self.expect(occurrence, execution);
         }
         if let Some(readings) = revision.readings {
@@ -809,6 +807,14 @@ impl Run<'_> {
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
         self.scheduled.clear();
+        for (&occurrence, ends) in &self.executions {
+            let described = &self.stage.network.occurrences[occurrence.index()];
+            let [started, ended] =
+                [described.start, described.end].map(|node| self.stage.times[node.index()]);
+            if started.is_some() && ended.is_none() {
+                self.stage.expect(occurrence, ends.least())?;
+            }
+        }
         self.arrivals = Arrivals::all(&mut self.stage, &self.executions)?;
         self.restart_frontier()?;
         Ok(kept.err().map(|node| {

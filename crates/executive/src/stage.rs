@@ -1,7 +1,7 @@
 //! One plan under execution, between two replans.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exact::{Bound, Time};
@@ -19,9 +19,6 @@ pub struct Stage {
     pub(crate) network: Arc<Network>,
     pub(crate) plan: Plan,
     pub(crate) made: PlanNetwork,
-    /// The same if the environment ends all as soon as it may, which leaves drives the least time; `None` where it chooses
-    /// nothing.
-    hurried: Option<PlanNetwork>,
     /// What its events do to states and levels.
     pub(crate) effects: Effects,
     pub(crate) dispatch: Dispatch,
@@ -30,8 +27,8 @@ pub struct Stage {
     pub(crate) natures: BTreeMap<NodeId, Vec<ArcId>>,
     /// The vertices of paths.
     pub(crate) guides: BTreeMap<NodeId, Guide>,
-    /// How long traverses take at most at their least speeds, of those that are to keep that.
-    most: BTreeMap<OccurrenceId, Time>,
+    /// What traverses take by their paths and their drivers.
+    durations: Durations,
     /// The times that are not the network's own.
     grid: Arc<[Time]>,
     /// When each node happened.
@@ -49,31 +46,8 @@ pub struct Stage {
 impl Stage {
     /// Makes `plan` ready. `grid` are the times, or their common divisors, that are not the network's own.
     pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
-        let most = greatest_durations(&network, &plan)?;
-        Self::of(network, plan, most, grid.into())
-    }
-
-    fn of(
-        network: Arc<Network>,
-        plan: Plan,
-        most: BTreeMap<OccurrenceId, Time>,
-        grid: Arc<[Time]>,
-    ) -> Result<Self, PlanError> {
-        let dispatched = guided(&network, &most);
-        let mut made = PlanNetwork::new(&dispatched, &plan)?;
-        made.refine_for(&dispatched, &plan, &grid)?;
-        let hurried = if plan.has_natures_choice(&network) {
-            let network = hurried(&dispatched);
-            // A plan that cannot be kept then is not controllable.
-            let mut hurried = PlanNetwork::new(&network, &plan).ok();
-            if let Some(hurried) = &mut hurried {
-                hurried.refine_for(&network, &plan, &grid)?;
-            }
-            hurried
-        } else {
-            None
-        };
-        let dispatch = Dispatch::new(&dispatched, &plan, &made)?;
+        let durations = Durations::by_paths(&network, &plan)?;
+        let (made, dispatch) = durations.dispatch(&network, &plan, grid)?;
         let ranks = ranks(&network, &plan, &made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
         for (index, arc) in network.arcs.iter().enumerate().filter(|(_, arc)| arc.is_contingent) {
@@ -97,13 +71,12 @@ impl Stage {
             network,
             plan,
             made,
-            hurried,
             effects,
             dispatch,
             natures,
             guides,
-            most,
-            grid,
+            durations,
+            grid: grid.into(),
             times,
             from,
             ranks,
@@ -112,32 +85,48 @@ impl Stage {
         })
     }
 
-    /// The same where a traverse under way takes this long, even if that is longer than at its least speed; `None` if it
-    /// is not. A traverse without a duration never ends.
-    pub(crate) fn with_duration(
-        &self,
-        traverse: OccurrenceId,
-        duration: Option<Time>,
-    ) -> Result<Option<Self>, PlanError> {
-        let Some(&most) = self.most.get(&traverse) else { return Ok(None) };
-        if duration.is_some_and(|duration| duration <= most) {
-            return Ok(None);
+    /// Takes in how long a traverse under way takes at least, or that it never ends, as far as the mission itself does not
+    /// forbid it. Returns whether that changes what is dispatched.
+    pub(crate) fn expect(&mut self, traverse: OccurrenceId, least: Option<Time>) -> Result<bool, PlanError> {
+        if !self.durations.paths.contains(&traverse) {
+            return Ok(false);
         }
-        let mut most = self.most.clone();
-        most.remove(&traverse);
-        let mut stage = Self::of(Arc::clone(&self.network), self.plan.clone(), most, Arc::clone(&self.grid))?;
-        stage.from = self.from;
-        let past = self.times.iter().enumerate();
-        let past = past.filter_map(|(index, &time)| Some((time?, NodeId::from_index(index)))).collect();
-        // It allows more than before.
-        Ok(stage.enter_past(past).is_ok().then_some(stage))
+        let mut allowed = self.durations.clone();
+        if allowed.most.get(&traverse).is_some_and(|&most| least.is_none_or(|least| least > most)) {
+            allowed.most.remove(&traverse);
+        }
+        let mut expected = allowed.clone();
+        // In a plan without such choices it is enough to ask which events leave it the time.
+        if let (Some(least), true) = (least, self.dispatch.withstands_nature()) {
+            expected.least.insert(traverse, least);
+        }
+        // What cannot be kept any more is late whatever else waits for it.
+        Ok(self.try_durations(expected)? || self.try_durations(allowed)?)
     }
 
-    /// For each point how many ticks after it another one comes at the latest, as far as nothing else is sure.
-    pub(crate) fn latest_after_each(&mut self, point: PointId) -> Result<Vec<i64>, PlanError> {
-        let mut after = Vec::new();
-        self.hurried.as_mut().unwrap_or(&mut self.made).stn.distances_to(point, &mut after)?;
-        Ok(after)
+    /// Dispatches the plan with other durations from now on, if it can be kept with them.
+    fn try_durations(&mut self, durations: Durations) -> Result<bool, PlanError> {
+        if durations == self.durations {
+            return Ok(false);
+        }
+        let (made, dispatch) = match durations.dispatch(&self.network, &self.plan, &self.grid) {
+            Ok(made) => made,
+            Err(PlanError::Inconsistent) => return Ok(false),
+            Err(error) => return Err(error),
+        };
+        if dispatch.withstands_nature() != self.dispatch.withstands_nature() {
+            return Ok(false);
+        }
+        let before =
+            (std::mem::replace(&mut self.made, made), std::mem::replace(&mut self.dispatch, dispatch));
+        let past = self.times.iter().enumerate();
+        let past = past.filter_map(|(index, &time)| Some((time?, NodeId::from_index(index)))).collect();
+        if self.enter_past(past).is_err() {
+            (self.made, self.dispatch) = before;
+            return Ok(false);
+        }
+        self.durations = durations;
+        Ok(true)
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -280,46 +269,76 @@ impl Guide {
     }
 }
 
-/// How long the traverses of a plan take at most at their least speeds, of those that may not stop.
-fn greatest_durations(network: &Network, plan: &Plan) -> Result<BTreeMap<OccurrenceId, Time>, PlanError> {
-    let mut greatest: BTreeMap<OccurrenceId, Bound> = BTreeMap::new();
-    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
-        if let (ArcKind::Path, Some(traverse)) = (arc.kind, arc.occurrence) {
-            let all = greatest.entry(traverse).or_insert(Bound::ZERO);
-            *all = all.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
-        }
-    }
-    Ok(greatest.into_iter().filter_map(|(traverse, most)| Some((traverse, most.finite()?))).collect())
-}
-
-/// A network in which the vertices of paths have no latest times of their own, but the traverses take at most this long.
-fn guided<'network>(
+/// The network of a plan as it is executed: the vertices of paths have no latest times of their own, but traverses take at
+/// most as long as at their least speeds.
+pub fn executed_network<'network>(
     network: &'network Network,
-    most: &BTreeMap<OccurrenceId, Time>,
-) -> Cow<'network, Network> {
-    if network.arcs.iter().all(|arc| arc.kind != ArcKind::Path) {
-        return Cow::Borrowed(network);
-    }
-    let mut network = network.clone();
-    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
-        arc.upper = Bound::Infinite;
-    }
-    for (traverse, &most) in most {
-        if let Some(whole) = network.occurrences[traverse.index()].arc {
-            let whole = &mut network.arcs[whole.index()];
-            whole.upper = whole.upper.min(Bound::Finite(most));
-        }
-    }
-    Cow::Owned(network)
+    plan: &Plan,
+) -> Result<Cow<'network, Network>, PlanError> {
+    Ok(Durations::by_paths(network, plan)?.guided(network))
 }
 
-/// A network in which the environment ends all as soon as it may.
-fn hurried(network: &Network) -> Network {
-    let mut network = network.clone();
-    for arc in network.arcs.iter_mut().filter(|arc| arc.is_contingent) {
-        arc.upper = Bound::Finite(arc.lower);
+/// What traverses take by their paths and their drivers.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Durations {
+    /// Those with paths.
+    paths: BTreeSet<OccurrenceId>,
+    /// At most at their least speeds, of those that may not stop.
+    most: BTreeMap<OccurrenceId, Time>,
+    /// At least, as the drivers of those under way say.
+    least: BTreeMap<OccurrenceId, Time>,
+}
+
+impl Durations {
+    fn by_paths(network: &Network, plan: &Plan) -> Result<Self, PlanError> {
+        let mut greatest: BTreeMap<OccurrenceId, Bound> = BTreeMap::new();
+        let selected = network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected);
+        for (arc, _) in selected {
+            if let (ArcKind::Path, Some(traverse)) = (arc.kind, arc.occurrence) {
+                let all = greatest.entry(traverse).or_insert(Bound::ZERO);
+                *all = all.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
+            }
+        }
+        let paths = greatest.keys().copied().collect();
+        let most = greatest.into_iter().filter_map(|(traverse, most)| Some((traverse, most.finite()?)));
+        Ok(Self { paths, most: most.collect(), least: BTreeMap::new() })
     }
-    network
+
+    /// Makes a plan ready for dispatch, in which the vertices of paths have no latest times of their own, but the traverses
+    /// take these durations.
+    fn dispatch(
+        &self,
+        network: &Network,
+        plan: &Plan,
+        grid: &[Time],
+    ) -> Result<(PlanNetwork, Dispatch), PlanError> {
+        let network = self.guided(network);
+        let mut made = PlanNetwork::new(&network, plan)?;
+        made.refine_for(&network, plan, grid)?;
+        let dispatch = Dispatch::new(&network, plan, &made)?;
+        Ok((made, dispatch))
+    }
+
+    fn guided<'network>(&self, network: &'network Network) -> Cow<'network, Network> {
+        if self.paths.is_empty() {
+            return Cow::Borrowed(network);
+        }
+        let mut network = network.clone();
+        for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+            arc.upper = Bound::Infinite;
+        }
+        for traverse in &self.paths {
+            let Some(whole) = network.occurrences[traverse.index()].arc else { continue };
+            let whole = &mut network.arcs[whole.index()];
+            if let Some(&most) = self.most.get(traverse) {
+                whole.upper = whole.upper.min(Bound::Finite(most));
+            }
+            if let Some(&least) = self.least.get(traverse) {
+                whole.lower = whole.lower.max(least);
+            }
+        }
+        Cow::Owned(network)
+    }
 }
 
 /// Arcs lead forwards in time, but for those by which facts hold the past, which lead back to the start, and for bounds between

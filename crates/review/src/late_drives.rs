@@ -74,6 +74,7 @@ fn late_where_longer(
     plan: &Plan,
     mut longer: BTreeMap<OccurrenceId, Time>,
 ) -> Result<BTreeSet<OccurrenceId>, Overflow> {
+    let network = &executed(network, plan, &longer)?;
     let scale = longer.values().try_fold(controllability::scale(network)?, |scale, &by| scale.refined(by))?;
     let mut late = BTreeSet::new();
     let slow = loop {
@@ -105,8 +106,35 @@ fn late_where_longer(
     Ok(late)
 }
 
-/// The network of a plan as it is executed, with drives that take at least so much longer than planned. The vertices of
-/// a path are no deadlines then, and each may be passed so much later.
+/// The network of a plan as it is executed where drives take so much longer: whose driver says so may take longer than at
+/// its least speed.
+fn executed(
+    network: &Network,
+    plan: &Plan,
+    longer: &BTreeMap<OccurrenceId, Time>,
+) -> Result<Network, Overflow> {
+    let mut executed = executive::executed_network(network, plan).map_err(|_| Overflow)?.into_owned();
+    let mut least: BTreeMap<OccurrenceId, Time> = BTreeMap::new();
+    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
+        if let (ArcKind::Path, Some(drive)) = (arc.kind, arc.occurrence) {
+            let least = least.entry(drive).or_default();
+            *least = least.checked_add(arc.lower).ok_or(Overflow)?;
+        }
+    }
+    for (drive, &by) in longer {
+        let least = least.get(drive).copied().unwrap_or_default();
+        let driven = Bound::Finite(least.checked_add(by).ok_or(Overflow)?);
+        if let Some(whole) = network.occurrences[drive.index()].arc {
+            let own = network.arcs[whole.index()].upper;
+            let most = &mut executed.arcs[whole.index()].upper;
+            *most = (*most).max(own.min(driven));
+        }
+    }
+    Ok(executed)
+}
+
+/// The network of a plan with drives that take at least so much longer than planned; each vertex of their paths may be
+/// passed so much later.
 fn driven(
     network: &Network,
     plan: &Plan,
@@ -114,9 +142,6 @@ fn driven(
     scale: Scale,
 ) -> Result<PlanNetwork, Overflow> {
     let mut network = network.clone();
-    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
-        arc.upper = Bound::Infinite;
-    }
     for (drive, first) in first_segments(&network, plan) {
         if let Some(&by) = longer.get(&drive) {
             let arc = &mut network.arcs[first.index()];
