@@ -245,30 +245,45 @@ impl Execution {
         Self { steps, deadlines, before, after, order, origin: quick.origin.index() }
     }
 
-    /// The drives for which a deadline after them may be missed, because they set out only after what it counts from.
-    fn late(&self, drives: &[Drive]) -> BTreeSet<OccurrenceId> {
+    /// The drives for which a deadline after them may be missed, because they set out only after what it counts from. What
+    /// comes after they have set out waits for them, and with it what follows that.
+    fn late(&mut self, drives: &[Drive]) -> BTreeSet<OccurrenceId> {
         let mut late = BTreeSet::new();
-        let is_after_a_drive = self.reached(drives.iter().map(|drive| drive.on_the_way), false);
-        let earliest = self.times(self.origin, false, |step| step.least);
-        let latest = self.times(self.origin, false, |step| step.most);
-        for deadline in &self.deadlines {
-            let Deadline { since, event, within } = *deadline;
-            // First what is quick to see.
-            let is_met = || match (earliest[since], latest[event]) {
-                (Some(since), Some(event)) => event.saturating_sub(since) <= within,
-                _ => false,
+        let mut open = std::mem::take(&mut self.deadlines);
+        loop {
+            let is_after_a_drive = self.reached(drives.iter().map(|drive| drive.on_the_way), false);
+            let earliest = self.times(self.origin, false, |step| step.least);
+            let latest = self.times(self.origin, false, |step| step.most);
+            let is_met = |deadline: &Deadline| {
+                let quick = match (earliest[deadline.since], latest[deadline.event]) {
+                    (Some(since), Some(event)) => event.saturating_sub(since) <= deadline.within,
+                    _ => false,
+                };
+                !is_after_a_drive[deadline.event] || quick || self.is_met(deadline, earliest[deadline.since])
             };
-            if !is_after_a_drive[event] || is_met() || self.is_met(deadline, earliest[since]) {
-                continue;
+            let (met, missed): (Vec<Deadline>, Vec<Deadline>) = open.into_iter().partition(is_met);
+            if missed.is_empty() {
+                return late;
             }
-            let (before_event, before_since) = (self.reached([event], true), self.reached([since], true));
-            let may_be_late = |drive: &&Drive| {
-                let has_set_out = before_since[drive.start] && drive.start != since;
-                before_event[drive.on_the_way] && !has_set_out
-            };
-            late.extend(drives.iter().filter(may_be_late).map(|drive| drive.id));
+            for deadline in missed {
+                let before_event = self.reached([deadline.event], true);
+                let before_since = self.reached([deadline.since], true);
+                let may_be_late = |drive: &&Drive| {
+                    let has_set_out = before_since[drive.start] && drive.start != deadline.since;
+                    before_event[drive.on_the_way] && !has_set_out
+                };
+                late.extend(drives.iter().filter(may_be_late).map(|drive| drive.id));
+                let waits = -deadline.within;
+                self.add_step(Step { from: deadline.event, to: deadline.since, least: waits, most: waits });
+            }
+            open = met;
         }
-        late
+    }
+
+    fn add_step(&mut self, step: Step) {
+        self.before[step.to].push(self.steps.len());
+        self.after[step.from].push(self.steps.len());
+        self.steps.push(step);
     }
 
     /// Whether a deadline is met whatever anything takes, as far as this shows it. `earliest` is when the event that it
