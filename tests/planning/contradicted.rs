@@ -103,6 +103,15 @@ fn nothing_that_reviews_of_random_missions_have_passed_is_contradicted() {
     }
 }
 
+/// Declares the locations P0 and so on, each near a place of its own.
+fn write_places(text: &mut String, rng: &mut Rng, count: usize) {
+    let places = [(20, 24), (58, 30), (26, 70), (72, 66), (44, 48), (60, 80), (84, 40)];
+    for (number, (x, y)) in places.iter().take(count).enumerate() {
+        let _ =
+            writeln!(text, "location P{number} ({}, {});", x + rng.between(-4, 4), y + rng.between(-4, 4));
+    }
+}
+
 /// A mission of one or two vehicles that drive with a battery, which may be charged, among obstacles, on a map or without one.
 fn driving_mission(seed: u64) -> String {
     let mut rng = Rng::new(seed ^ 0x6472);
@@ -110,11 +119,7 @@ fn driving_mission(seed: u64) -> String {
     if rng.chance(60) {
         text.push_str("terrain \"tai-plain\" cell 0.6 origin (0, 0);\n");
     }
-    let places = [(20, 24), (58, 30), (26, 70), (72, 66), (44, 48)];
-    for (number, (x, y)) in places.iter().enumerate() {
-        let _ =
-            writeln!(text, "location P{number} ({}, {});", x + rng.between(-4, 4), y + rng.between(-4, 4));
-    }
+    write_places(&mut text, &mut rng, 5);
     if rng.chance(50) {
         let _ = writeln!(text, "obstacle O circle ({}, {}, 3);", rng.between(34, 38), rng.between(30, 60));
     }
@@ -212,11 +217,7 @@ fn deadline_mission(seed: u64) -> String {
     if rng.chance(50) {
         text.push_str("terrain \"tai-plain\" cell 0.6 origin (0, 0);\n");
     }
-    let places = [(20, 24), (58, 30), (26, 70), (72, 66), (44, 48), (60, 80), (84, 40)];
-    for (number, (x, y)) in places.iter().enumerate() {
-        let _ =
-            writeln!(text, "location P{number} ({}, {});", x + rng.between(-4, 4), y + rng.between(-4, 4));
-    }
+    write_places(&mut text, &mut rng, 7);
     let vehicles = rng.between(1, 3);
     for number in 0..vehicles {
         let model = if rng.chance(60) { "ATRV" } else { "ATRV-Jr" };

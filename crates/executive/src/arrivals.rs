@@ -1,5 +1,5 @@
 //! When vehicles under way arrive: what would leave them no time for that waits, as long as the plan lets it. This is for
-//! plans in which the environment chooses nothing. Others are dispatched anew with what drivers say, by [`Stage::expect`].
+//! plans in which the environment chooses nothing. In other plans, [`Stage::expect`] dispatches again.
 
 use std::collections::BTreeMap;
 

@@ -28,6 +28,6 @@ pub use pinned::PinnedPlan;
 pub use plan_network::{PlanError, PlanNetwork};
 pub use progress::{Observations, Progress, Waiting, progress};
 pub use run::{Replanner, RunOutcome, run, run_stage};
-pub use stage::{ExecutedPlan, Stage, executed_network};
+pub use stage::{ExecutedPlan, Stage, executed_network, without_vertex_deadlines};
 pub use strategy::{Act, Actor, Course, Strategy, UnderWay};
 pub use world::{Disturbance, Script, World, WorldChange};

@@ -3,7 +3,7 @@
 use exact::{Bound, Scale, Time};
 use stn::{Inconsistency, PointId, Stn, Window};
 use stnu::Undecided;
-use tpn::{ArcId, ArcKind, Network, NodeId, Plan, Precedence};
+use tpn::{ArcId, Network, NodeId, Plan, Precedence};
 
 /// A plan's events as time points, with their constraints.
 #[derive(Clone, Debug)]
@@ -16,8 +16,6 @@ pub struct PlanNetwork {
     nodes: Vec<NodeId>,
     scale: Scale,
     origin: PointId,
-    /// Whether the vertices of a path have no latest times of their own.
-    is_guided: bool,
 }
 
 /// The tag of what planning added and of what was observed.
@@ -68,16 +66,6 @@ impl From<Inconsistency> for PlanError {
 impl PlanNetwork {
     /// The network of `plan`. Fails for a plan whose constraints contradict each other.
     pub fn new(network: &Network, plan: &Plan) -> Result<Self, PlanError> {
-        Self::of(network, plan, false)
-    }
-
-    /// The network of `plan` as it is executed: the vertices of a path guide a vehicle and are not deadlines, so that
-    /// what bounds a traverse from above is what the mission says of it.
-    pub fn guided(network: &Network, plan: &Plan) -> Result<Self, PlanError> {
-        Self::of(network, plan, true)
-    }
-
-    fn of(network: &Network, plan: &Plan, is_guided: bool) -> Result<Self, PlanError> {
         let mut points = vec![None; network.nodes.len()];
         let mut nodes = Vec::new();
         for (index, &selected) in plan.selected_nodes.iter().enumerate() {
@@ -89,7 +77,7 @@ impl PlanNetwork {
         let scale = controllability::scale(network)?;
         let stn = Stn::new(nodes.len());
         let origin = points[network.start.index()].ok_or(PlanError::Inconsistent)?;
-        let mut made = Self { stn, points, nodes, scale, origin, is_guided };
+        let mut made = Self { stn, points, nodes, scale, origin };
         made.add_arcs(network, plan)?;
         made.add_decisions(network, plan)?;
         Ok(made)
@@ -98,8 +86,7 @@ impl PlanNetwork {
     fn add_arcs(&mut self, network: &Network, plan: &Plan) -> Result<(), PlanError> {
         for (index, arc) in network.arcs.iter().enumerate().filter(|&(index, _)| plan.selected_arcs[index]) {
             let lower = self.scale.ticks(arc.lower)?;
-            let is_free = self.is_guided && arc.kind == ArcKind::Path;
-            let upper = self.scale.bound_ticks(if is_free { Bound::Infinite } else { arc.upper })?;
+            let upper = self.scale.bound_ticks(arc.upper)?;
             let (Some(from), Some(to)) = (self.point(arc.from), self.point(arc.to)) else {
                 return Err(PlanError::Inconsistent);
             };

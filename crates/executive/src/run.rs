@@ -715,7 +715,12 @@ impl Run<'_> {
 
     /// Takes in how long an activity under way takes at least, or that it never ends.
     fn expect_duration(&mut self, occurrence: OccurrenceId, least: Option<Time>) -> Result<(), PlanError> {
-        if self.stage.expect(occurrence, least)? { self.restart_frontier() } else { Ok(()) }
+        if !self.stage.expect(occurrence, least)? {
+            return Ok(());
+        }
+        // Its ticks may be others than before.
+        self.arrivals = Arrivals::all(&mut self.stage, &self.executions)?;
+        self.restart_frontier()
     }
 
     /// Takes in how an activity will go.
@@ -808,12 +813,7 @@ impl Run<'_> {
         self.plans.push(before.close());
         self.scheduled.clear();
         for (&occurrence, ends) in &self.executions {
-            let described = &self.stage.network.occurrences[occurrence.index()];
-            let [started, ended] =
-                [described.start, described.end].map(|node| self.stage.times[node.index()]);
-            if started.is_some() && ended.is_none() {
-                self.stage.expect(occurrence, ends.least())?;
-            }
+            self.stage.expect(occurrence, ends.least())?;
         }
         self.arrivals = Arrivals::all(&mut self.stage, &self.executions)?;
         self.restart_frontier()?;

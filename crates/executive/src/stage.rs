@@ -88,20 +88,29 @@ impl Stage {
     /// Takes in how long a traverse under way takes at least, or that it never ends, as far as the mission itself does not
     /// forbid it. Returns whether that changes what is dispatched.
     pub(crate) fn expect(&mut self, traverse: OccurrenceId, least: Option<Time>) -> Result<bool, PlanError> {
-        if !self.durations.paths.contains(&traverse) {
+        let described = &self.network.occurrences[traverse.index()];
+        let [started, ended] = [described.start, described.end].map(|node| self.times[node.index()]);
+        if !self.durations.paths.contains(&traverse) || started.is_none() || ended.is_some() {
             return Ok(false);
         }
-        let mut allowed = self.durations.clone();
-        if allowed.most.get(&traverse).is_some_and(|&most| least.is_none_or(|least| least > most)) {
-            allowed.most.remove(&traverse);
-        }
-        let mut expected = allowed.clone();
+        let most = self.durations.most.get(&traverse);
+        let is_over = most.is_some_and(|&most| least.is_none_or(|least| least > most));
         // In a plan without such choices it is enough to ask which events leave it the time.
-        if let (Some(least), true) = (least, self.dispatch.withstands_nature()) {
+        let least = least.filter(|_| self.dispatch.withstands_nature());
+        let allowed = is_over.then(|| {
+            let mut allowed = self.durations.clone();
+            allowed.most.remove(&traverse);
+            allowed
+        });
+        if let Some(least) = least {
+            let mut expected = allowed.as_ref().unwrap_or(&self.durations).clone();
             expected.least.insert(traverse, least);
+            if self.try_durations(expected)? {
+                return Ok(true);
+            }
         }
-        // What cannot be kept any more is late whatever else waits for it.
-        Ok(self.try_durations(expected)? || self.try_durations(allowed)?)
+        // A drive that leaves the rest no time is late, whatever waits for it.
+        allowed.map_or(Ok(false), |allowed| self.try_durations(allowed))
     }
 
     /// Dispatches the plan with other durations from now on, if it can be kept with them.
@@ -269,6 +278,19 @@ impl Guide {
     }
 }
 
+/// A network in which the vertices of paths guide vehicles and are not deadlines, so that what bounds a traverse from above is
+/// what the mission says of it.
+pub fn without_vertex_deadlines(network: &Network) -> Cow<'_, Network> {
+    if network.arcs.iter().all(|arc| arc.kind != ArcKind::Path) {
+        return Cow::Borrowed(network);
+    }
+    let mut network = network.clone();
+    for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        arc.upper = Bound::Infinite;
+    }
+    Cow::Owned(network)
+}
+
 /// The network of a plan as it is executed: the vertices of paths have no latest times of their own, but traverses take at
 /// most as long as at their least speeds.
 pub fn executed_network<'network>(
@@ -320,16 +342,10 @@ impl Durations {
     }
 
     fn guided<'network>(&self, network: &'network Network) -> Cow<'network, Network> {
-        if self.paths.is_empty() {
-            return Cow::Borrowed(network);
-        }
-        let mut network = network.clone();
-        for arc in network.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
-            arc.upper = Bound::Infinite;
-        }
+        let mut network = without_vertex_deadlines(network);
         for traverse in &self.paths {
             let Some(whole) = network.occurrences[traverse.index()].arc else { continue };
-            let whole = &mut network.arcs[whole.index()];
+            let whole = &mut network.to_mut().arcs[whole.index()];
             if let Some(&most) = self.most.get(traverse) {
                 whole.upper = whole.upper.min(Bound::Finite(most));
             }
@@ -337,7 +353,7 @@ impl Durations {
                 whole.lower = whole.lower.max(least);
             }
         }
-        Cow::Owned(network)
+        network
     }
 }
 

@@ -11,7 +11,7 @@ mod trip;
 mod way;
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exact::{Overflow, Rational, Time};
@@ -115,7 +115,7 @@ struct Before {
 
 /// The way of a vehicle, with the radius of its body in meters.
 struct Lane {
-    points_m: Vec<Point2<f64>>,
+    path: motion::Path,
     radius_m: f64,
 }
 
@@ -220,28 +220,36 @@ impl<'run> Driving<'run> {
             !drive.vehicles.contains(&vehicle)
                 && drive.vehicles.iter().any(|&own| vehicle::flies(world, own) == flies)
         };
-        let mut lanes: BTreeMap<u32, Vec<Point2<f64>>> = BTreeMap::new();
+        let mut lanes: BTreeMap<u32, motion::Path> = BTreeMap::new();
         for driven in self.drives.iter().flat_map(|drive| &drive.vehicles) {
             let left = driven.frames.iter().filter(|frame| frame.time > now).map(|frame| frame.position_m);
             let left: Vec<Point2<f64>> = left.collect();
             if !left.is_empty() && is_in_its_way(driven.vehicle) {
-                lanes.insert(driven.vehicle, left);
+                lanes.insert(driven.vehicle, motion::Path::new(left));
             }
         }
         let courses = self.courses.borrow();
-        let has_departed =
-            |occurrence: OccurrenceId| self.drives.iter().any(|drive| drive.occurrence == occurrence);
-        let mut next: Vec<&Drive> = courses.known.values().map(|course| &course.drive).collect();
-        next.retain(|drive| !has_departed(drive.occurrence));
-        next.sort_by_key(|drive| drive.start);
-        for (vehicle, track) in
-            next.iter().flat_map(|drive| drive.vehicles.iter().zip(driving::tracks_m(drive)))
-        {
-            if is_in_its_way(*vehicle) {
-                lanes.entry(*vehicle).or_insert(track.points_m);
+        let departed: BTreeSet<OccurrenceId> = self.drives.iter().map(|drive| drive.occurrence).collect();
+        let mut next: BTreeMap<u32, &Drive> = BTreeMap::new();
+        for drive in courses.known.values().map(|course| &course.drive) {
+            let others = drive.vehicles.iter().filter(|vehicle| {
+                !departed.contains(&drive.occurrence)
+                    && is_in_its_way(**vehicle)
+                    && !lanes.contains_key(vehicle)
+            });
+            for &vehicle in others {
+                let first = next.entry(vehicle).or_insert(drive);
+                if drive.start < first.start {
+                    *first = drive;
+                }
             }
         }
-        let lane = |(vehicle, points_m)| Lane { points_m, radius_m: vehicle::radius_m(world, vehicle) };
+        for (vehicle, drive) in next {
+            let member = drive.vehicles.iter().position(|&member| member == vehicle);
+            let track = member.and_then(|member| driving::tracks_m(drive).into_iter().nth(member));
+            lanes.extend(track.map(|track| (vehicle, track)));
+        }
+        let lane = |(vehicle, path)| Lane { path, radius_m: vehicle::radius_m(world, vehicle) };
         lanes.into_iter().map(lane).collect()
     }
 

@@ -36,11 +36,19 @@ pub(super) fn late_drives(snapshot: &Snapshot, network: &Network, plan: &Plan) -
             continue;
         }
         let least = Time::checked_sum(traverse.leg_figures.iter().map(|leg| leg.least_duration));
-        let driven = Time::from_f64_up(driven_s, 1000).and_then(|driven_s| driven_s.checked_div(unit_s));
-        match driven.zip(least).and_then(|(driven, least)| driven.checked_sub(least)) {
-            Some(by) if by.is_positive() => drop(longer.insert(id, by)),
-            Some(_) => {}
-            None => drop(late.insert(id)),
+        let in_all = Time::from_f64_up(driven_s, 1000).and_then(|driven_s| driven_s.checked_div(unit_s));
+        let slow = in_all
+            .zip(least)
+            .and_then(|(in_all, least)| Some(Slow { in_all, more: in_all.checked_sub(least)? }));
+        match slow {
+            Some(slow) => {
+                if slow.more.is_positive() {
+                    longer.insert(id, slow);
+                }
+            }
+            None => {
+                late.insert(id);
+            }
         }
     }
     if !longer.is_empty() {
@@ -68,14 +76,22 @@ pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: 
     motion::driven_within_s(least * unit_s, speed_mps, traverse.company as usize, leaves_out_rocks)
 }
 
-/// The drives that may be late where each takes `longer` than planned by so much.
+/// How long a drive takes at its longest.
+struct Slow {
+    in_all: Time,
+    /// How much more that is than planned.
+    more: Time,
+}
+
+/// The drives that may be late if they take so much longer.
 fn late_where_longer(
     network: &Network,
     plan: &Plan,
-    mut longer: BTreeMap<OccurrenceId, Time>,
+    mut longer: BTreeMap<OccurrenceId, Slow>,
 ) -> Result<BTreeSet<OccurrenceId>, Overflow> {
     let network = &executed(network, plan, &longer)?;
-    let scale = longer.values().try_fold(controllability::scale(network)?, |scale, &by| scale.refined(by))?;
+    let scale =
+        longer.values().try_fold(controllability::scale(network)?, |scale, slow| scale.refined(slow.more))?;
     let mut late = BTreeSet::new();
     let slow = loop {
         let slow = driven(network, plan, &longer, scale)?;
@@ -88,7 +104,7 @@ fn late_where_longer(
         };
         let refuted: BTreeSet<OccurrenceId> = refutation.sources.iter().filter_map(drive).collect();
         if refuted.is_empty() {
-            // Not a plan, whatever its drives take. The checker says so.
+            // The plan is invalid even without slow drives. The checker reports that.
             return Ok(late);
         }
         longer.retain(|drive, _| !refuted.contains(drive));
@@ -106,28 +122,19 @@ fn late_where_longer(
     Ok(late)
 }
 
-/// The network of a plan as it is executed where drives take so much longer: whose driver says so may take longer than at
-/// its least speed.
+/// The network of a plan as it is executed. The executive lets a drive exceed the duration at its least speed if its driver
+/// needs more, so the greatest durations allow for `longer`.
 fn executed(
     network: &Network,
     plan: &Plan,
-    longer: &BTreeMap<OccurrenceId, Time>,
+    longer: &BTreeMap<OccurrenceId, Slow>,
 ) -> Result<Network, Overflow> {
     let mut executed = executive::executed_network(network, plan).map_err(|_| Overflow)?.into_owned();
-    let mut least: BTreeMap<OccurrenceId, Time> = BTreeMap::new();
-    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
-        if let (ArcKind::Path, Some(drive)) = (arc.kind, arc.occurrence) {
-            let least = least.entry(drive).or_default();
-            *least = least.checked_add(arc.lower).ok_or(Overflow)?;
-        }
-    }
-    for (drive, &by) in longer {
-        let least = least.get(drive).copied().unwrap_or_default();
-        let driven = Bound::Finite(least.checked_add(by).ok_or(Overflow)?);
+    for (drive, slow) in longer {
         if let Some(whole) = network.occurrences[drive.index()].arc {
             let own = network.arcs[whole.index()].upper;
             let most = &mut executed.arcs[whole.index()].upper;
-            *most = (*most).max(own.min(driven));
+            *most = (*most).max(own.min(Bound::Finite(slow.in_all)));
         }
     }
     Ok(executed)
@@ -138,14 +145,14 @@ fn executed(
 fn driven(
     network: &Network,
     plan: &Plan,
-    longer: &BTreeMap<OccurrenceId, Time>,
+    longer: &BTreeMap<OccurrenceId, Slow>,
     scale: Scale,
 ) -> Result<PlanNetwork, Overflow> {
     let mut network = network.clone();
     for (drive, first) in first_segments(&network, plan) {
-        if let Some(&by) = longer.get(&drive) {
+        if let Some(slow) = longer.get(&drive) {
             let arc = &mut network.arcs[first.index()];
-            arc.lower = arc.lower.checked_add(by).ok_or(Overflow)?;
+            arc.lower = arc.lower.checked_add(slow.more).ok_or(Overflow)?;
         }
     }
     plan_network(&network, &plan.selected_arcs, &plan.precedences(&network), scale)
@@ -251,7 +258,7 @@ impl Execution {
         let mut late = BTreeSet::new();
         let mut open = std::mem::take(&mut self.deadlines);
         loop {
-            let is_after_a_drive = self.reached(drives.iter().map(|drive| drive.on_the_way), false);
+            let is_after_a_drive = self.reached(drives.iter().map(|drive| drive.on_the_way), false, |_| true);
             let earliest = self.times(self.origin, false, |step| step.least);
             let latest = self.times(self.origin, false, |step| step.most);
             let is_met = |deadline: &Deadline| {
@@ -266,8 +273,9 @@ impl Execution {
                 return late;
             }
             for deadline in missed {
-                let before_event = self.reached([deadline.event], true);
-                let before_since = self.reached([deadline.since], true);
+                let before_event = self.reached([deadline.event], true, |_| true);
+                // What waits for another event may still come before it.
+                let before_since = self.reached([deadline.since], true, |step| step.least >= 0);
                 let may_be_late = |drive: &&Drive| {
                     let has_set_out = before_since[drive.start] && drive.start != deadline.since;
                     before_event[drive.on_the_way] && !has_set_out
@@ -343,15 +351,20 @@ impl Execution {
         times
     }
 
-    /// The points that come after some of these, or before them, and these.
-    fn reached(&self, from: impl IntoIterator<Item = usize>, is_before: bool) -> Vec<bool> {
+    /// These points and those after them, or before them, along some of the steps.
+    fn reached(
+        &self,
+        from: impl IntoIterator<Item = usize>,
+        is_before: bool,
+        counts: impl Fn(&Step) -> bool,
+    ) -> Vec<bool> {
         let mut reached = vec![false; self.before.len()];
         let mut open: Vec<usize> = from.into_iter().collect();
         while let Some(point) = open.pop() {
             if !std::mem::replace(&mut reached[point], true) {
                 let next = if is_before { &self.before[point] } else { &self.after[point] };
-                let ends = next.iter().map(|&step| &self.steps[step]);
-                open.extend(ends.map(|step| if is_before { step.from } else { step.to }));
+                let steps = next.iter().map(|&step| &self.steps[step]).filter(|step| counts(step));
+                open.extend(steps.map(|step| if is_before { step.from } else { step.to }));
             }
         }
         reached

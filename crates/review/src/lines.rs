@@ -13,7 +13,7 @@ use tpn::{ArcKind, Network, NodeId, OccurrenceId};
 use super::demand_lines::status_by_checker;
 use super::late_drives::late_drives;
 use super::place::find_places;
-use super::plan_lines::{PlanLines, short_of_its_goal_m};
+use super::plan_lines::{LATE, PlanLines, short_of_its_goal_m};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
@@ -216,7 +216,7 @@ fn controllability(
     if is_late {
         let names: Vec<&str> =
             late.iter().map(|drive| network.occurrences[drive.index()].name.as_str()).collect();
-        text.push_str(&format!("; slow driving in {} may make the plan late", names.join(", ")));
+        text.push_str(&format!("; slow driving in {} {LATE}", names.join(", ")));
     }
     let has_meetings = is_checked && !snapshot.separation_violations.is_empty();
     if has_meetings {

@@ -22,7 +22,7 @@ use super::{
 };
 
 /// How the line of a drive ends for which the plan may not leave enough time.
-const LATE: &str = "may make the plan late";
+pub(super) const LATE: &str = "may make the plan late";
 
 /// How the line of a drive ends that other vehicles may hold up.
 const IN_THE_WAY: &str = "may be in its way";
@@ -407,8 +407,7 @@ impl<'input> PlanLines<'input> {
         let mut driving = String::new();
         if is_late {
             let most = driven_within_s(self.snapshot, self.network, traverse) / unit_s;
-            driving =
-                format!("; slow driving, up to {most:.1} {}, may make the plan late", unit(self.snapshot));
+            driving = format!("; slow driving, up to {most:.1} {}, {LATE}", unit(self.snapshot));
         }
         if !others.is_empty() {
             driving.push_str(&format!("; {} {IN_THE_WAY}", others.join(", ")));

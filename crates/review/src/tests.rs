@@ -341,12 +341,17 @@ fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() 
 #[test]
 fn a_drive_that_others_cannot_wait_for_needs_attention() {
     let drive = |scenario: &str| {
+        let order = if scenario.contains("First") {
+            "constrain First.start to Then.start [0,500]; constrain First.end to Then.end [0,500];"
+        } else {
+            ""
+        };
         let source = format!(
             "location A (20, 20); location B (50, 20); vehicle R : ATRV at A; var SKY : {{OK, BAD}};
              primitive Drive(to)[0,200] moves R speed (0.1, 0.5) requires SKY=OK;
              primitive Free(to)[0,200] moves R speed (0.1, 0.5);
-             primitive Walk() contingent [1,4]; primitive Rest()[10,10];
-             scenario S[0,600] = {scenario}"
+             primitive Walk() contingent [1,4]; primitive Rest()[10,10]; primitive Wait()[0,20];
+             {order} scenario S[0,600] = {scenario}"
         );
         let review = reviewed(&source);
         let line = &review.traverses.first().expect("a drive").line;
@@ -363,6 +368,9 @@ fn a_drive_that_others_cannot_wait_for_needs_attention() {
         // The sky is to be clear no longer than needed, and has to be before the drive sets out.
         ("{ { Rest(); Drive(B) }, { delay; SKY=OK [4,4] } }", Status::Attention),
         ("{ Drive(B), { SKY=OK [4,4] } }", Status::Passed),
+        // What ends when it will can wait for the drive, but then the wait before it was too early.
+        ("{ { Rest(); Free(B) as First }, { delay; { Wait(); Walk() as Then } [0,6] } }", Status::Attention),
+        ("{ { Rest(); Free(B) as First }, { delay; { Wait(); Walk() as Then } } }", Status::Passed),
     ];
     for (scenario, status) in cases {
         assert_eq!(drive(scenario), status, "{scenario}");

@@ -478,8 +478,8 @@ impl<'a> Trip<'a> {
             shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
         let rooms_m = [0.3, model.margin_m, 0.0];
-        let apart = self.apart_from_others(&shared);
-        let spaces = [apart, shared, occupancy].map(|it| ConfigurationSpace::new(it, model.circumradius_m));
+        let maps = self.apart_from_others(&shared).into_iter().chain([shared, occupancy]);
+        let spaces: Vec<_> = maps.map(|map| ConfigurationSpace::new(map, model.circumradius_m)).collect();
         let found = rests_m.into_iter().find_map(|rest_m| {
             let after = rest_of(&path, path.length_m() - rest_m);
             let &goal_m =
@@ -504,20 +504,23 @@ impl<'a> Trip<'a> {
         Ok(())
     }
 
-    /// A map on which nothing else comes where others drive.
-    fn apart_from_others(&self, occupancy: &Occupancy) -> Occupancy {
+    /// The map with the ways of others as obstacles; `None` if there are none.
+    fn apart_from_others(&self, occupancy: &Occupancy) -> Option<Occupancy> {
+        if self.lanes.is_empty() {
+            return None;
+        }
         let mut occupancy = occupancy.clone();
-        for lane in self.lanes {
-            let way = Path::new(lane.points_m.clone());
-            let steps = (way.length_m() / LANE_STEP_M).ceil() as u32;
+        for Lane { path, radius_m } in self.lanes {
+            let length_m = path.length_m();
+            let steps = (length_m / LANE_STEP_M).ceil() as u32;
             for step in 0..=steps {
-                let along_m = (f64::from(step) * LANE_STEP_M).min(way.length_m());
-                let Some((center_m, _)) = way.point_at(along_m) else { continue };
-                let radius_m = lane.radius_m + BESIDE_M;
-                occupancy.mark(&Obstacle::Circle { center_m, radius_m }, CellState::Obstacle);
+                let along_m = (f64::from(step) * LANE_STEP_M).min(length_m);
+                let Some((center_m, _)) = path.point_at(along_m) else { continue };
+                let around = Obstacle::Circle { center_m, radius_m: radius_m + BESIDE_M };
+                occupancy.mark(&around, CellState::Obstacle);
             }
         }
-        occupancy
+        Some(occupancy)
     }
 
     /// Sends a vehicle along another way, and the others after the leader.
@@ -545,8 +548,8 @@ impl<'a> Trip<'a> {
         for &center_m in &self.known {
             occupancy.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
-        let spaces = [self.apart_from_others(&occupancy), occupancy]
-            .map(|it| ConfigurationSpace::new(it, model.radius_m()));
+        let maps = self.apart_from_others(&occupancy).into_iter().chain([occupancy]);
+        let spaces: Vec<_> = maps.map(|map| ConfigurationSpace::new(map, model.radius_m())).collect();
         let (mut points, mut ends_m, mut from_m) = (Vec::new(), Vec::new(), 0.0);
         let mut is_new = false;
         let length_m = path.length_m();

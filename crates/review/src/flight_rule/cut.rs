@@ -63,8 +63,10 @@ impl Times {
     /// `None` where times do not fit. `named` are the times that a rule names.
     pub(super) fn new(network: &Network, plan: &Plan, named: &[Time]) -> Option<Self> {
         let start = network.start;
-        let mut times = PlanNetwork::guided(network, plan).ok()?;
-        times.refine_for(network, plan, named).ok()?;
+        // Drivers may need longer than at the least speed, so that only the mission bounds their drives.
+        let network = executive::without_vertex_deadlines(network);
+        let mut times = PlanNetwork::new(&network, plan).ok()?;
+        times.refine_for(&network, plan, named).ok()?;
         Some(Self { network: times, start, rows: BTreeMap::new() })
     }
 
