@@ -192,6 +192,14 @@ impl Convoy {
         }
     }
 
+    /// Those that stand close to a vehicle that cannot continue drive on rather than wait for the leader.
+    pub fn make_room(&mut self, vehicle: usize) {
+        let close: Vec<usize> = self.close_to(vehicle).map(|(other, _)| other).collect();
+        for other in close {
+            self.members[other].pass_for(self.spacing_m);
+        }
+    }
+
     /// A vehicle is to stay where it is.
     pub fn stay(&mut self, vehicle: usize) {
         if let Some(member) = self.members.get_mut(vehicle) {
@@ -356,14 +364,18 @@ impl Convoy {
 
     /// Whether a vehicle stands because another one goes around it close by, before it if both do.
     fn lets_pass(&self, vehicle: usize) -> bool {
-        let own = &self.members[vehicle];
-        let radius_m = own.driver.settings().radius_m + PASSING_M;
-        let here = own.driver.state().position_m;
-        self.beside(vehicle).any(|(index, other)| {
+        let passes = self.members[vehicle].passes();
+        self.close_to(vehicle)
+            .any(|(index, other)| other.passes() && !other.has_arrived && (!passes || index < vehicle))
+    }
+
+    /// The others beside a vehicle that leave too little room between to go through.
+    fn close_to(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Member)> {
+        let own = &self.members[vehicle].driver;
+        let (here, radius_m) = (own.state().position_m, own.settings().radius_m + PASSING_M);
+        self.beside(vehicle).filter(move |(_, other)| {
             let driver = &other.driver;
-            let is_close =
-                distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m;
-            other.passes() && !other.has_arrived && (!own.passes() || index < vehicle) && is_close
+            distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m
         })
     }
 

@@ -151,6 +151,8 @@ pub(super) struct Trip<'a> {
     pub(super) seen: SeenMap,
     /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
+    /// Where each vehicle is back on its own path, in meters before its end, if it was led around something.
+    rejoins_m: Vec<f64>,
 }
 
 impl<'a> Trip<'a> {
@@ -302,6 +304,7 @@ impl<'a> Trip<'a> {
             flies,
             seen: SeenMap::default(),
             leg_ends_m: course.leg_ends_m.clone(),
+            rejoins_m: vec![f64::INFINITY; count],
         }
     }
 
@@ -459,8 +462,11 @@ impl<'a> Trip<'a> {
                 .filter(|it| *it < remaining_m - 1.0)
                 .take(1)
                 .collect(),
+            // The way that led it around something is not its own.
             _ => {
-                REJOINING_M.map(|ahead_m| remaining_m - ahead_m).into_iter().filter(|it| *it > 1.0).collect()
+                let rejoins_m = self.rejoins_m[vehicle].min(remaining_m);
+                let ahead_m = [0.0].into_iter().filter(|_| rejoins_m < remaining_m).chain(REJOINING_M);
+                ahead_m.map(|ahead_m| rejoins_m - ahead_m).filter(|it| *it > 1.0).collect()
             }
         };
         if vehicle > 0 || rests_m.is_empty() {
@@ -491,6 +497,7 @@ impl<'a> Trip<'a> {
         });
         let Some((mut way, after)) = found else { return Err(stuck) };
         let length_m = way.length_m();
+        self.rejoins_m[vehicle] = Path::new(after.clone()).length_m();
         way.points_m.extend(after.into_iter().skip(1));
         let name = self.names[vehicle];
         self.entries.push((
@@ -501,6 +508,7 @@ impl<'a> Trip<'a> {
             ),
         ));
         self.send(vehicle, way);
+        self.convoy.make_room(vehicle);
         Ok(())
     }
 
@@ -531,6 +539,7 @@ impl<'a> Trip<'a> {
                 let short_m = self.course.drive.spacing_m * follower as f64;
                 let mut points = vec![own];
                 points.extend(until(&way, way.length_m() - short_m));
+                self.rejoins_m[follower] = f64::INFINITY;
                 self.convoy.follow(follower, Path::new(points));
             }
         }
