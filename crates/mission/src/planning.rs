@@ -846,9 +846,11 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 /// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up: between what it drives at least along
 /// its path and at most; costs are those of the path itself.
 fn count_meters(network: &mut Network, route: &Route, length_m: f64, world: &World) {
-    let at_most_m = motion::driven_at_most_m(length_m, route.company, leaves_out_rocks(world, route));
+    let has_rocks = leaves_out_rocks(world, route);
+    let at_most_m = motion::driven_at_most_m(length_m, route.company, has_rocks);
     let (Some(meters), Some(at_most)) = (rounded_up(length_m), rounded_up(at_most_m)) else { return };
-    let at_least = rounded_up(motion::driven_at_least_m(length_m, route.company)).unwrap_or_default();
+    let at_least = motion::driven_at_least_m(length_m, route.company, has_rocks);
+    let at_least = rounded_up(at_least).unwrap_or_default();
     let with = |amount: Rational, per_meter: Rational, meters: Rational| {
         per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
@@ -1002,6 +1004,9 @@ pub(crate) fn conclude(
                 vehicles: route.vehicles.iter().map(|&vehicle| vehicle as u32).collect(),
                 length_m: path.length_m(),
                 clearance_m: clearances_m.fold(f64::INFINITY, f64::min),
+                narrow_m: leaves_out_rocks(world, &route)
+                    .then(|| motion::narrow_passage(space, &path))
+                    .flatten(),
                 slope_max_rad: slopes_rad.fold(0.0, f64::max),
                 leg_figures: figures(problem, &route, legs, map, space),
                 legs: legs.clone(),

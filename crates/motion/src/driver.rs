@@ -134,6 +134,7 @@ const AROUND_ROCKS_M: f64 = 30.0;
 const LESS_SHARE: f64 = 0.01;
 const LESS_M: f64 = 2.5;
 const LESS_FOR_FOLLOWER_M: f64 = 1.5;
+const LESS_AROUND_ROCKS_M: f64 = 5.0;
 /// The share of its margin that a vehicle keeps from what it is too near already.
 const CLOSE_SHARE: f64 = 0.25;
 /// The greatest turn between two decisions, in radians.
@@ -166,9 +167,11 @@ pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, leaves_ou
 }
 
 /// How far it drives at least: it cuts corners, and has arrived a little before the path's end, or as near to it as its
-/// followers leave it room. Measured in the same way.
-pub fn driven_at_least_m(length_m: f64, followers: usize) -> f64 {
-    (length_m * (1.0 - LESS_SHARE) - LESS_M - LESS_FOR_FOLLOWER_M * followers as f64).max(0.0)
+/// followers leave it room; the way around rocks may be shorter than the path. Measured in the same way.
+pub fn driven_at_least_m(length_m: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
+    let rocks_m = if leaves_out_rocks { LESS_AROUND_ROCKS_M } else { 0.0 };
+    let less_m = LESS_M + LESS_FOR_FOLLOWER_M * followers as f64 + rocks_m;
+    (length_m * (1.0 - LESS_SHARE) - less_m).max(0.0)
 }
 
 /// The time between two decisions of a vehicle that drives at most this fast, in seconds.

@@ -2,19 +2,26 @@
 //! (SPEC 10, 11). The independent checker examines all of it, and a line has passed only if the checker finds the plan
 //! valid.
 
+use std::collections::BTreeSet;
+
 use exact::Rational;
 use rmpl::program::LabelMode;
 use smol_str::SmolStr;
-use snapshot::Planning;
-use tpn::{CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, UseId, Variable};
+use snapshot::{Planning, Traverse};
+use tpn::{
+    CausalLink, Extent, LabelId, Levels, Network, NodeId, OccurrenceId, Plan, Resource, Supply, UseId,
+    Variable,
+};
 
 use super::lines::Places;
+use super::plan_lines::CLOSED;
 use super::{Line, ResourceReview, Status};
 
 /// What the lines are made from.
 pub(super) struct DemandLines<'input> {
     pub(super) network: &'input Network,
     pub(super) plan: &'input Plan,
+    pub(super) traverses: &'input [Traverse],
     pub(super) places: &'input Places<'input>,
     /// How everything stands that the checker examines.
     pub(super) status: Status,
@@ -98,13 +105,21 @@ impl DemandLines<'_> {
             .collect()
     }
 
-    /// Whether what drives take of a resource depends on how far they really drive.
-    fn is_driven(&self, resource: &Resource) -> bool {
-        self.network.uses.iter().any(|used| {
+    /// The drives that take of a resource, or give to it, by how far they really drive.
+    fn drives(&self, resource: &Resource) -> impl Iterator<Item = Option<OccurrenceId>> {
+        let is_driven = |used: &&tpn::Use| {
             self.network.resources[used.resource.index()].name == resource.name
                 && self.plan.selected_arcs.get(used.arc.index()) == Some(&true)
                 && used.at_least < used.amount
-        })
+        };
+        self.network.uses.iter().filter(is_driven).map(|used| used.owner)
+    }
+
+    /// The name of a drive whose path one rock could close, if it is one.
+    fn narrow(&self, drive: OccurrenceId) -> Option<&str> {
+        let is_narrow = |it: &Traverse| it.occurrence == drive && it.narrow_m.is_some();
+        let name = || self.network.occurrences[drive.index()].name.as_str();
+        self.traverses.iter().any(is_narrow).then(name)
     }
 
     fn requirements(&self) -> Option<Line> {
@@ -248,7 +263,8 @@ impl DemandLines<'_> {
 
     fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
         let name = resource.name.as_str();
-        let (text, spare, room) = match (resource.supply, levels) {
+        let mut narrow = BTreeSet::new();
+        let (mut text, spare, room) = match (resource.supply, levels) {
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
                 let spare = capacity.checked_sub(peak)?;
                 let [capacity, peak] = [capacity, peak].map(Rational::readable);
@@ -277,15 +293,22 @@ impl DemandLines<'_> {
                     format!("{} below its maximum {greatest}", room.readable())
                 };
                 let mut text = format!("{name} stays between {low} and {high}: {above}, {below}");
-                if self.is_driven(resource) {
+                let mut drives = self.drives(resource).peekable();
+                if drives.peek().is_some() {
                     text.push_str("; for every distance that drives may take along their paths");
                 }
+                narrow = drives.flatten().filter_map(|drive| self.narrow(drive)).collect();
                 (text, spare, Some(room))
             }
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
-        let status = if is_short { Status::Failed } else { self.status };
+        let mut status = if is_short { Status::Failed } else { self.status };
+        if !narrow.is_empty() {
+            let narrow: Vec<&str> = narrow.into_iter().collect();
+            text.push_str(&format!("; not known for {}: {CLOSED}", narrow.join(", ")));
+            status = status.max(Status::Attention);
+        }
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
         let (name, supply) = (name.to_owned(), resource.supply);
         Some(ResourceReview { line, name, supply, levels, spare, room })

@@ -13,7 +13,7 @@ use tpn::{ArcKind, Network, NodeId, OccurrenceId};
 use super::demand_lines::status_by_checker;
 use super::late_drives::late_drives;
 use super::place::find_places;
-use super::plan_lines::{LATE, PlanLines, short_of_its_goal_m};
+use super::plan_lines::{CLOSED, LATE, PlanLines, short_of_its_goal_m};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
@@ -218,11 +218,19 @@ fn controllability(
             late.iter().map(|drive| network.occurrences[drive.index()].name.as_str()).collect();
         text.push_str(&format!("; slow driving in {} {LATE}", names.join(", ")));
     }
+    let narrow = snapshot.traverses.iter().filter(|it| it.narrow_m.is_some());
+    let narrow: Vec<&str> =
+        narrow.map(|it| network.occurrences[it.occurrence.index()].name.as_str()).collect();
+    let has_narrow = is_checked && !narrow.is_empty();
+    if has_narrow {
+        text.push_str(&format!("; {} may take longer: {CLOSED}", narrow.join(", ")));
+    }
     let has_meetings = is_checked && !snapshot.separation_violations.is_empty();
     if has_meetings {
         text.push_str("; vehicles that come too close may delay each other beyond that");
     }
-    let status = if !is_late && !has_meetings { status } else { status.max(Status::Attention) };
+    let is_sure = !is_late && !has_narrow && !has_meetings;
+    let status = if is_sure { status } else { status.max(Status::Attention) };
     Some(places.line(status, text, None, names, nodes))
 }
 

@@ -27,9 +27,12 @@ pub(super) const LATE: &str = "may make the plan late";
 /// How the line of a drive ends that other vehicles may hold up.
 const IN_THE_WAY: &str = "may be in its way";
 
+/// What lines say of drives that may have to take another path, which may be longer than plans count.
+pub(super) const CLOSED: &str = "a rock that the map does not show could close its path";
+
 /// Whether the line of a drive says that the plan may be late because of it.
 pub(super) fn may_be_late(line: &Line) -> bool {
-    [LATE, IN_THE_WAY].iter().any(|reason| line.text.contains(reason))
+    [LATE, IN_THE_WAY, CLOSED].iter().any(|reason| line.text.contains(reason))
 }
 
 /// What the lines about a plan are made from.
@@ -63,7 +66,8 @@ impl<'input> PlanLines<'input> {
 
     /// The lines about what lasts and what is limited.
     pub(super) fn demands(&self) -> DemandLines<'input> {
-        DemandLines { network: self.network, plan: self.plan, places: self.places, status: self.checked }
+        let Self { snapshot, network, plan, places, checked: status, .. } = *self;
+        DemandLines { network, plan, traverses: &snapshot.traverses, places, status }
     }
 
     pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {
@@ -381,7 +385,7 @@ impl<'input> PlanLines<'input> {
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
-            _ if is_late || !others.is_empty() => Status::Attention,
+            _ if is_late || !others.is_empty() || traverse.narrow_m.is_some() => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -411,6 +415,10 @@ impl<'input> PlanLines<'input> {
         }
         if !others.is_empty() {
             driving.push_str(&format!("; {} {IN_THE_WAY}", others.join(", ")));
+        }
+        if let Some(place_m) = traverse.narrow_m {
+            let (x, y) = (place_m.x.round(), place_m.y.round());
+            driving.push_str(&format!("; {CLOSED} near ({x}, {y}), and another one is long"));
         }
         let text = format!(
             "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",

@@ -115,6 +115,9 @@ pub struct Traverse {
     pub length_m: f64,
     /// The least distance from the path of any of its vehicles to an obstacle, in meters, beyond the radius of the widest.
     pub clearance_m: f64,
+    /// Where a rock that the map does not show could close its path, so that the way around is long
+    /// (`motion::narrow_passage`); in meters.
+    pub narrow_m: Option<Point2<f64>>,
     /// The steepest slope along the path of any of its vehicles, in radians.
     pub slope_max_rad: f64,
     /// What each leg comes to, in order.

@@ -455,19 +455,15 @@ impl<'a> Trip<'a> {
         let reach_m = model.circumradius_m + model.margin_m + BESIDE_M;
         let is_taken = |place: Point2<f64>| driver.seen_m().any(|point| distance(&point, &place) <= reach_m);
         // The end of the leg under way, or for a follower a place on its way not far ahead, so that it stays with the others.
-        let mut rests_m: Vec<f64> = match vehicle {
-            0 => ends_m
-                .iter()
-                .map(|end_m| total_m - end_m)
-                .filter(|it| *it < remaining_m - 1.0)
-                .take(1)
-                .collect(),
-            // The way that led it around something is not its own.
-            _ => {
-                let rejoins_m = self.rejoins_m[vehicle].min(remaining_m);
-                let ahead_m = [0.0].into_iter().filter(|_| rejoins_m < remaining_m).chain(REJOINING_M);
-                ahead_m.map(|ahead_m| rejoins_m - ahead_m).filter(|it| *it > 1.0).collect()
-            }
+        let mut rests_m: Vec<f64> = if vehicle == 0 {
+            let rests_m = ends_m.iter().map(|end_m| total_m - end_m);
+            rests_m.filter(|it| *it < remaining_m - 1.0).take(1).collect()
+        } else {
+            // A way that led it around something is not its own.
+            let rejoins_m = self.rejoins_m[vehicle].min(remaining_m);
+            let first_m = (rejoins_m < remaining_m).then_some(0.0);
+            let ahead_m = first_m.into_iter().chain(REJOINING_M);
+            ahead_m.map(|ahead_m| rejoins_m - ahead_m).filter(|it| *it > 1.0).collect()
         };
         if vehicle > 0 || rests_m.is_empty() {
             rests_m.push(0.0);

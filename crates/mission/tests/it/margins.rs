@@ -61,7 +61,7 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                 let Some(traverse) = planned.traverses.iter().find(is_its) else { continue };
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
                 let bounds = [
-                    motion::driven_at_least_m(length_m, followers),
+                    motion::driven_at_least_m(length_m, followers, has_map),
                     motion::driven_at_most_m(length_m, followers, has_map),
                 ];
                 assert!(
