@@ -123,6 +123,8 @@ const WAITING_SPACINGS: f64 = 3.0;
 const WAITING_SHARE: f64 = 0.5;
 /// Who has come no farther together, though the leader's pace was so many meters meanwhile, has stalled.
 const STALL_M: f64 = 4.0;
+/// The places of a vehicle that brakes are at least so far apart, in meters.
+const BRAKING_STEP_M: f64 = 0.15;
 /// A vehicle waits while another one within so many meters drives around it.
 const PASSING_M: f64 = 0.6;
 /// Coming farther means so many meters less to go for all together.
@@ -369,20 +371,27 @@ impl Convoy {
             .any(|(index, other)| other.passes() && !other.has_arrived && (!passes || index < vehicle))
     }
 
-    /// The others beside a vehicle that leave too little room between to go through.
+    /// The others beside a vehicle that leave too little room between to go through, when both stand.
     fn close_to(&self, vehicle: usize) -> impl Iterator<Item = (usize, &Member)> {
         let own = &self.members[vehicle].driver;
-        let (here, radius_m) = (own.state().position_m, own.settings().radius_m + PASSING_M);
-        self.beside(vehicle).filter(move |(_, other)| {
+        let (here, radius_m, stopping_m) =
+            (own.state().position_m, own.settings().radius_m, self.stopping_m(vehicle));
+        self.beside(vehicle).filter(move |(index, other)| {
             let driver = &other.driver;
-            distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m
+            let room_m = PASSING_M.max(stopping_m + self.stopping_m(*index));
+            distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m + room_m
         })
     }
 
-    /// The vehicles of the convoy that one goes around, as place and radius in meters.
+    /// The vehicles of the convoy that one goes around, as places and radii in meters: where they are, and where they are
+    /// until they stand if they brake now.
     fn to_pass(&self, vehicle: usize) -> Vec<(Point2<f64>, f64)> {
         let passed = self.beside(vehicle).filter(|(other, _)| !self.waits_behind(vehicle, *other));
-        passed.map(|(_, other)| (other.driver.state().position_m, other.driver.settings().radius_m)).collect()
+        let places = |(_, other): (usize, &Member)| {
+            let radius_m = other.driver.settings().radius_m;
+            other.driver.braking_m(BRAKING_STEP_M).into_iter().map(move |place| (place, radius_m))
+        };
+        passed.flat_map(places).collect()
     }
 
     /// The vehicles of the convoy that are close in front of one.

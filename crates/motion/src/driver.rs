@@ -266,6 +266,23 @@ impl Driver {
         points
     }
 
+    /// Where it is, and then every so many meters until it stands if it brakes now, in meters.
+    pub(crate) fn braking_m(&self, step_m: f64) -> Vec<Point2<f64>> {
+        let mut places = vec![self.state.position_m];
+        let (mut state, mut last_m) = (self.state, self.state.position_m);
+        loop {
+            let next = state.after(0.0, state.turn_rate_rps, STEP_S, &self.settings.limits);
+            if next.speed_mps >= state.speed_mps {
+                return places;
+            }
+            state = next;
+            if state.speed_mps <= 0.0 || distance(&last_m, &state.position_m) >= step_m {
+                last_m = state.position_m;
+                places.push(last_m);
+            }
+        }
+    }
+
     /// Changes the speed that it aims at, in meters per second. Standing on command is not being blocked, and the time that
     /// it takes does not count.
     pub const fn set_cruise(&mut self, speed_mps: f64) {
@@ -327,9 +344,8 @@ impl Driver {
         let ahead = |path: &Path, along_m: f64| path.point_at(along_m + settings.lookahead_m).map(|it| it.0);
         let target = ahead(&self.path, self.progress_m).unwrap_or(here);
         let reach = settings.radius_m + settings.margin_m;
-        if self.seen.is_open(here, target, reach + 0.5 * settings.margin_m)
-            && map.is_none_or(|map| !map.is_free(here) || map.is_segment_free(here, target))
-        {
+        let is_free = |place| map.is_none_or(|map| !map.is_free(here) || map.is_segment_free(here, place));
+        if self.seen.is_open(here, target, reach + 0.5 * settings.margin_m) && is_free(target) {
             self.detour = None;
             return target;
         }
@@ -355,10 +371,9 @@ impl Driver {
         let Some(detour) = &self.detour else { return target };
         let (along, _) = nearest_along(detour, here, 0.0, detour.length_m());
         let place = |ahead_m: f64| detour.point_at(along + ahead_m).map(|(place, _)| place);
-        let in_sight = DETOUR_SIGHTS_M
-            .iter()
-            .filter_map(|&ahead_m| place(ahead_m))
-            .find(|&place| self.seen.is_open(here, place, reach + 0.25 * settings.margin_m));
+        let in_sight = DETOUR_SIGHTS_M.iter().filter_map(|&ahead_m| place(ahead_m)).find(|&place| {
+            self.seen.is_open(here, place, reach + 0.25 * settings.margin_m) && is_free(place)
+        });
         in_sight.or_else(|| place(0.25)).unwrap_or(target)
     }
 

@@ -16,6 +16,8 @@ const AROUND_M: f64 = 10.0;
 const LEAVING: f64 = 2.0;
 /// How far beside the rock the shortest ways around it lead, in the same unit: so far that they keep away from it.
 const BESIDE: f64 = 1.2;
+/// Where the path has no room for the rock before and after it, the way around leaves it at most so many meters from the rock.
+const LEAVING_WITHIN_M: f64 = 7.0;
 /// Places on the path that are looked at are at least so far apart, in meters.
 const STEP_M: f64 = 1.0;
 
@@ -35,18 +37,31 @@ pub fn narrow_passage(space: &ConfigurationSpace, path: &Path) -> Option<Point2<
         let (place, _) = path.point_at(along_m)?;
         let room_m = space.clearance_m(place)?;
         if room_m < away_m {
-            let ends_m = [along_m - leaving_m, along_m + leaving_m].map(|at_m| path.point_at(at_m));
-            let [Some((from, _)), Some((to, _))] = ends_m else { return None };
-            if !leads_past(space, [from, to], place, away_m)
-                && !leads_around(space, [from, to], place, rock_m)
-            {
-                return Some(place);
+            let near = ends_m(path, along_m, leaving_m)?;
+            if !leads_past(space, near, place, away_m) {
+                let has_room = |ends_m: &[Point2<f64>; 2]| {
+                    ends_m.iter().all(|&end| space.clearance_m(end).is_some_and(|room_m| room_m >= away_m))
+                };
+                let far = (1..)
+                    .map(|step| leaving_m + f64::from(step) * STEP_M)
+                    .take_while(|leaving_m| *leaving_m <= LEAVING_WITHIN_M)
+                    .filter_map(|leaving_m| ends_m(path, along_m, leaving_m));
+                let mut ends = far.filter(has_room).chain([near]);
+                if !ends.any(|ends| leads_around(space, ends, place, rock_m)) {
+                    return Some(place);
+                }
             }
         }
         // Clearance changes by no more than the way moved.
         along_m += (room_m - away_m).max(STEP_M);
     }
     None
+}
+
+/// The places on a path some meters before and after another one.
+fn ends_m(path: &Path, along_m: f64, leaving_m: f64) -> Option<[Point2<f64>; 2]> {
+    let [before, after] = [along_m - leaving_m, along_m + leaving_m].map(|at_m| path.point_at(at_m));
+    Some([before?.0, after?.0])
 }
 
 /// Whether a vehicle can drive past a rock close on one of its sides.
@@ -93,4 +108,48 @@ fn map_around(space: &ConfigurationSpace, center_m: Point2<f64>, across_m: f64) 
     };
     let occupied: Vec<bool> = (0..frame.cell_count()).map(of_map).collect();
     Occupancy::from_obstacles(frame, &occupied)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether one rock could close a straight path of 60 m through a gap of some meters between two walls, each so many meters
+    /// wide along the path and long across it.
+    fn is_closed_by_a_rock(gap_m: f64, wide_m: f64, long_m: f64) -> bool {
+        let mut map = Occupancy::free(GridFrame::new(120, 120, 0.6));
+        let [west, east] = [36.0 - 0.5 * wide_m, 36.0 + 0.5 * wide_m];
+        for (near, far) in [(0.5 * gap_m, 0.5 * gap_m + long_m), (-0.5 * gap_m - long_m, -0.5 * gap_m)] {
+            let corners = [[west, 36.0 + near], [east, 36.0 + near], [east, 36.0 + far], [west, 36.0 + far]];
+            let wall = Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() };
+            map.mark(&wall, CellState::Steep);
+        }
+        let space = ConfigurationSpace::new(map, 0.7);
+        let path = Path::new(vec![Point2::new(6.0, 36.0), Point2::new(66.0, 36.0)]);
+        let closed = narrow_passage(&space, &path);
+        if let Some(place) = closed {
+            assert!((west - 3.0..=east + 3.0).contains(&place.x), "{place}");
+        }
+        closed.is_some()
+    }
+
+    #[test]
+    fn a_rock_closes_a_gap_that_it_leaves_no_room_in_and_that_no_short_way_leads_around() {
+        assert!(is_closed_by_a_rock(4.0, 3.0, 25.0));
+        assert!(is_closed_by_a_rock(4.0, 24.0, 25.0));
+        assert!(!is_closed_by_a_rock(9.0, 3.0, 25.0), "there is room beside the rock");
+        assert!(!is_closed_by_a_rock(4.0, 3.0, 3.0), "a short way leads around a wall");
+    }
+
+    #[test]
+    fn a_path_along_one_wall_or_over_a_map_that_ends_is_not_closed() {
+        let mut map = Occupancy::free(GridFrame::new(100, 12, 0.6));
+        let corners = [[0.0, 0.0], [60.0, 0.0], [60.0, 1.2], [0.0, 1.2]];
+        map.mark(&Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() }, CellState::Steep);
+        let space = ConfigurationSpace::new(map, 0.7);
+        let along = |y: f64| Path::new(vec![Point2::new(2.0, y), Point2::new(58.0, y)]);
+        assert_eq!(narrow_passage(&space, &along(2.6)), None);
+        assert_eq!(narrow_passage(&space, &Path::new(vec![Point2::new(2.0, 3.0)])), None);
+        assert_eq!(narrow_passage(&space, &Path::new(Vec::new())), None);
+    }
 }

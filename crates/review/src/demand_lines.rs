@@ -306,7 +306,7 @@ impl DemandLines<'_> {
         let mut status = if is_short { Status::Failed } else { self.status };
         if !narrow.is_empty() {
             let narrow: Vec<&str> = narrow.into_iter().collect();
-            text.push_str(&format!("; not known for {}: {CLOSED}", narrow.join(", ")));
+            text.push_str(&format!("; {} may drive farther: {CLOSED}", narrow.join(", ")));
             status = status.max(Status::Attention);
         }
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());

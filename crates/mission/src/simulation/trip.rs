@@ -50,6 +50,15 @@ const BESIDE_M: f64 = 0.3;
 const KNOWN_M: f64 = 0.9;
 /// What sonars hear continues the map from this near on, in meters.
 const HEARD_M: f64 = 1.5;
+/// Another way is long if it is so many times as long as the straight line to its end, and so many meters more; less room is
+/// worth it if the way is then at most this share as long.
+const LONG_SHARE: f64 = 1.5;
+const LONG_M: f64 = 10.0;
+const SAVED_SHARE: f64 = 0.7;
+/// Samples of a search for another way, the places near the vehicle from which it is searched at most, and meters between them.
+const MAX_SAMPLES: u32 = 5_000;
+const STARTS: u32 = 4;
+const STARTS_APART_M: f64 = 0.6;
 /// How finely the ways of others are put on a map, in meters.
 const LANE_STEP_M: f64 = 0.5;
 /// Meters beyond the path are counted by so many.
@@ -80,6 +89,15 @@ impl Layers {
     const fn of_mut(&mut self, flies: bool) -> &mut FineWorld {
         if flies { &mut self.air } else { &mut self.ground }
     }
+}
+
+/// A follower that was led around something.
+#[derive(Clone, Copy)]
+struct LedAround {
+    /// Where it is back on its own path, in meters before its end.
+    rejoins_m: f64,
+    /// How often it was led around something before it was back there.
+    tries: usize,
 }
 
 impl Neighbor<'_> {
@@ -151,8 +169,8 @@ pub(super) struct Trip<'a> {
     pub(super) seen: SeenMap,
     /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
-    /// Where each vehicle is back on its own path, in meters before its end, if it was led around something.
-    rejoins_m: Vec<f64>,
+    /// How each follower was led around something last.
+    led_around: Vec<Option<LedAround>>,
 }
 
 impl<'a> Trip<'a> {
@@ -304,7 +322,7 @@ impl<'a> Trip<'a> {
             flies,
             seen: SeenMap::default(),
             leg_ends_m: course.leg_ends_m.clone(),
-            rejoins_m: vec![f64::INFINITY; count],
+            led_around: vec![None; count],
         }
     }
 
@@ -459,11 +477,15 @@ impl<'a> Trip<'a> {
             let rests_m = ends_m.iter().map(|end_m| total_m - end_m);
             rests_m.filter(|it| *it < remaining_m - 1.0).take(1).collect()
         } else {
-            // A way that led it around something is not its own.
-            let rejoins_m = self.rejoins_m[vehicle].min(remaining_m);
-            let first_m = (rejoins_m < remaining_m).then_some(0.0);
-            let ahead_m = first_m.into_iter().chain(REJOINING_M);
-            ahead_m.map(|ahead_m| rejoins_m - ahead_m).filter(|it| *it > 1.0).collect()
+            // A way that led it around something is not its own. Where it does not get back from there, it tries farther on.
+            let (rejoins_m, tries) = match self.led_around[vehicle] {
+                Some(led) if led.rejoins_m < remaining_m => (led.rejoins_m, led.tries),
+                _ => (remaining_m, 0),
+            };
+            self.led_around[vehicle] = Some(LedAround { rejoins_m, tries: tries + 1 });
+            let ahead_m = REJOINING_M.into_iter().cycle().skip(tries % REJOINING_M.len());
+            let rests_m = ahead_m.take(REJOINING_M.len()).map(|ahead_m| rejoins_m - ahead_m);
+            rests_m.filter(|it| *it > 1.0).collect()
         };
         if vehicle > 0 || rests_m.is_empty() {
             rests_m.push(0.0);
@@ -493,7 +515,9 @@ impl<'a> Trip<'a> {
         });
         let Some((mut way, after)) = found else { return Err(stuck) };
         let length_m = way.length_m();
-        self.rejoins_m[vehicle] = Path::new(after.clone()).length_m();
+        if let Some(led) = &mut self.led_around[vehicle] {
+            led.rejoins_m = motion::length_m(&after);
+        }
         way.points_m.extend(after.into_iter().skip(1));
         let name = self.names[vehicle];
         self.entries.push((
@@ -535,7 +559,7 @@ impl<'a> Trip<'a> {
                 let short_m = self.course.drive.spacing_m * follower as f64;
                 let mut points = vec![own];
                 points.extend(until(&way, way.length_m() - short_m));
-                self.rejoins_m[follower] = f64::INFINITY;
+                self.led_around[follower] = None;
                 self.convoy.follow(follower, Path::new(points));
             }
         }
@@ -686,7 +710,8 @@ impl<'a> Trip<'a> {
     }
 }
 
-/// A way from a place to another one, with the first of some rooms around the vehicle that leaves one.
+/// A way from a place to another one, with the first of some rooms around the vehicle that leaves one; with less room where
+/// that saves a long way around.
 fn way_between<const COUNT: usize>(
     space: &ConfigurationSpace,
     rooms_m: [f64; COUNT],
@@ -695,28 +720,50 @@ fn way_between<const COUNT: usize>(
     model: &VehicleModel,
     seed: u32,
 ) -> Option<Path> {
-    rooms_m.iter().find_map(|room_m| {
+    let long_m = LONG_SHARE * distance(&here, &goal_m) + LONG_M;
+    let mut best: Option<Path> = None;
+    for room_m in rooms_m {
+        if best.as_ref().is_some_and(|best| best.length_m() <= long_m) {
+            break;
+        }
         let space = space.with_radius_m(model.circumradius_m + room_m);
-        let settings = motion::Settings {
-            seed: u64::from(seed),
-            max_samples: 20_000,
-            ..motion::Settings::of(PlannerKind::RrtConnect)
-        };
-        let start_m = nearest_free(|place| space.is_free(place), here)?;
-        // What was seen near the goal fills whole cells as well.
-        let end_m = nearest_free(|place| space.is_free(place), goal_m)?;
+        if let Some(way) = way_within(&space, here, goal_m, seed)
+            && best.as_ref().is_none_or(|best| way.length_m() < SAVED_SHARE * best.length_m())
+        {
+            best = Some(way);
+        }
+    }
+    best
+}
+
+/// A way in the free places of a vehicle, which starts at the nearest one that leads on and ends at the one nearest to the goal.
+fn way_within(space: &ConfigurationSpace, here: Point2<f64>, goal_m: Point2<f64>, seed: u32) -> Option<Path> {
+    let settings = motion::Settings {
+        seed: u64::from(seed),
+        max_samples: MAX_SAMPLES,
+        ..motion::Settings::of(PlannerKind::RrtConnect)
+    };
+    // What was seen near the goal fills whole cells as well.
+    let end_m = nearest_free(|place| space.is_free(place), goal_m)?;
+    let mut tried_m: Vec<Point2<f64>> = Vec::new();
+    let (start_m, mut way) = (0..STARTS).find_map(|_| {
+        // Cells that are taken for what was seen may leave free places that lead nowhere.
+        let is_new = |place| tried_m.iter().all(|tried| distance(tried, &place) >= STARTS_APART_M);
+        let leads_on = |place| is_new(place) && space.is_free(place) && !space.are_separated(place, end_m);
+        let start_m = nearest_free(leads_on, here)?;
+        tried_m.push(start_m);
         let query = Query { start_m, goal_m: end_m };
         let shortcut = ShortcutSettings::default();
-        let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);
-        let mut way = found.path.ok()?;
-        if start_m != here {
-            way.points_m.insert(0, here);
-        }
-        if end_m != goal_m {
-            way.points_m.push(goal_m);
-        }
-        Some(way)
-    })
+        let found = motion::find_shortest_path(space, query, &settings, &shortcut, 3, &mut |_| false);
+        Some((start_m, found.path.ok()?))
+    })?;
+    if start_m != here {
+        way.points_m.insert(0, here);
+    }
+    if end_m != goal_m {
+        way.points_m.push(goal_m);
+    }
+    Some(way)
 }
 
 /// The time that a traverse is to take, in mission units: what the environment chose of its range, or otherwise that of
