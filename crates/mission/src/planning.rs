@@ -13,7 +13,7 @@ use exact::{Bound, Rational, Time};
 use executive::Facts;
 use executive::facts::StandingPlace;
 use kirk::{Options, Outcome, Stats, Status};
-use motion::{Formation, SegmentTiming, SpeedLimits};
+use motion::{Formation, HiddenRocks, SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
 use rmpl::program::{self, Change, Measure, Program, World};
 use snapshot::blocked::name_blocked;
@@ -829,13 +829,15 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
             continue;
         };
         let path = map.and_then(|map| traverse_path(route, legs, map));
+        let world = &problem.program.world;
+        let rocks = map.map_or(HiddenRocks::None, |map| hidden_rocks(world, route, map));
         let outcome = path.map_or(Ok(()), |path| tpn::path::insert_path(&mut network, &path, unit_seconds));
         if outcome.is_err() {
             // Nothing is known of how long it takes.
             block(&mut network, occurrence);
             continue;
         }
-        count_meters(&mut network, route, snapshot::joined(legs).length_m(), &problem.program.world);
+        count_meters(&mut network, route, snapshot::joined(legs).length_m(), rocks);
     }
     match problem.facts {
         Some(facts) => facts.apply(&network, problem.network.nodes.len()),
@@ -845,11 +847,10 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 
 /// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up: between what it drives at least along
 /// its path and at most; costs are those of the path itself.
-fn count_meters(network: &mut Network, route: &Route, length_m: f64, world: &World) {
-    let has_rocks = leaves_out_rocks(world, route);
-    let at_most_m = motion::driven_at_most_m(length_m, route.company, has_rocks);
+fn count_meters(network: &mut Network, route: &Route, length_m: f64, rocks: HiddenRocks) {
+    let at_most_m = motion::driven_at_most_m(length_m, route.company, rocks);
     let (Some(meters), Some(at_most)) = (rounded_up(length_m), rounded_up(at_most_m)) else { return };
-    let at_least = motion::driven_at_least_m(length_m, route.company, has_rocks);
+    let at_least = motion::driven_at_least_m(length_m, route.company, rocks);
     let at_least = rounded_up(at_least).unwrap_or_default();
     let with = |amount: Rational, per_meter: Rational, meters: Rational| {
         per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
@@ -864,9 +865,10 @@ fn count_meters(network: &mut Network, route: &Route, length_m: f64, world: &Wor
     }
 }
 
-/// Whether a route may meet rocks that its map does not show. What flies is above them.
-pub(crate) fn leaves_out_rocks(world: &World, route: &Route) -> bool {
-    world.terrain.is_some() && route.vehicles.iter().any(|&vehicle| !vehicle::flies(world, vehicle as u32))
+/// How many rocks a route may meet that its map does not show. What flies is above them.
+pub(crate) fn hidden_rocks(world: &World, route: &Route, map: &Terrain) -> HiddenRocks {
+    let drives = route.vehicles.iter().any(|&vehicle| !vehicle::flies(world, vehicle as u32));
+    if world.terrain.is_some() && drives { HiddenRocks::on(map) } else { HiddenRocks::None }
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {
@@ -999,12 +1001,14 @@ pub(crate) fn conclude(
             let tracks = drive.as_ref().map_or_else(|| vec![path.clone()], driving::tracks_m);
             let clearances_m = tracks.iter().map(|it| traverse::clearance_m(space, &it.points_m));
             let slopes_rad = tracks.iter().map(|it| map.steepest_slope_rad(&it.points_m));
+            let rocks = hidden_rocks(world, &route, map);
             traverses.push(Traverse {
                 occurrence: route.occurrence,
                 vehicles: route.vehicles.iter().map(|&vehicle| vehicle as u32).collect(),
                 length_m: path.length_m(),
                 clearance_m: clearances_m.fold(f64::INFINITY, f64::min),
-                narrow_m: leaves_out_rocks(world, &route)
+                rocks,
+                narrow_m: (rocks != HiddenRocks::None)
                     .then(|| motion::narrow_passage(space, &path))
                     .flatten(),
                 slope_max_rad: slopes_rad.fold(0.0, f64::max),

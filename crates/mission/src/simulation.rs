@@ -325,10 +325,10 @@ impl<'run> Driving<'run> {
         let length_m = course.drive.path.length_m();
         let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
         let company = course.route.company;
-        let leaves_out_rocks = planning::leaves_out_rocks(&self.problem.program.world, &course.route);
-        let at_most_m = motion::driven_at_most_m(length_m, company, leaves_out_rocks);
+        let rocks = planning::hidden_rocks(&self.problem.program.world, &course.route, self.map);
+        let at_most_m = motion::driven_at_most_m(length_m, company, rocks);
         let taken_m = margin(at_most_m - length_m)?;
-        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company, leaves_out_rocks))?;
+        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company, rocks))?;
         let extra = |(seconds, meters): (f64, f64)| {
             let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
             Ok((units(seconds)?, meters))

@@ -64,10 +64,13 @@ impl SeenPoints {
 
     /// Replaces the vehicles to go around, given as place and radius in meters.
     pub(crate) fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
-        const CORNERS: u32 = 16;
+        const CORNERS: u32 = 32;
         let corner = |corner: u32| std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
+        // The polygon holds the disc.
+        let outside = 1.0 / libm::cos(0.5 * corner(1));
         let rim = |&(place, radius_m): &(Point2<f64>, f64)| {
-            (0..CORNERS).map(move |at| place + UnitComplex::new(corner(at)) * Vector2::new(radius_m, 0.0))
+            let to_corner = Vector2::new(outside * radius_m, 0.0);
+            (0..CORNERS).map(move |at| place + UnitComplex::new(corner(at)) * to_corner)
         };
         self.vehicles = vehicles.iter().flat_map(rim).collect();
     }

@@ -7,7 +7,7 @@
 
 use nalgebra::{Point2, UnitComplex, Vector2, distance, distance_squared};
 use serde::{Deserialize, Serialize};
-use terrain::{ConfigurationSpace, Random};
+use terrain::{ConfigurationSpace, Random, Rock, Terrain};
 
 use crate::detour::{SeenPoints, find_detour, nearest_along};
 use crate::fine_world::FineWorld;
@@ -125,12 +125,16 @@ const MORE_SHARE: f64 = 0.04;
 const MORE_M: f64 = 1.5;
 const MORE_FOR_FOLLOWER_M: f64 = 2.0;
 const DETOUR_M: f64 = 20.0;
+const DETOUR_AMONG_MANY_M: f64 = 60.0;
 const DETOUR_FOR_FOLLOWER_M: f64 = 5.0;
 /// What it needs more time than its path, as a share of it, in seconds, and in meters that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
 const LONGER_S: f64 = 20.0;
 const LONGER_FOR_FOLLOWER_M: f64 = 10.0;
 const AROUND_ROCKS_M: f64 = 30.0;
+const AROUND_MANY_ROCKS_M: f64 = 90.0;
+/// Where rocks cover this share of the ground altogether, many are not on the map.
+const MANY_ROCKS: f64 = 0.075;
 const LESS_SHARE: f64 = 0.01;
 const LESS_M: f64 = 2.5;
 const LESS_FOR_FOLLOWER_M: f64 = 1.5;
@@ -140,13 +144,52 @@ const CLOSE_SHARE: f64 = 0.25;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
 
+/// How many rocks a vehicle may meet that its map does not show.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub enum HiddenRocks {
+    None,
+    Some,
+    Many,
+}
+
+impl HiddenRocks {
+    /// Those of a map, by what it shows of larger ones: sizes of rocks follow one distribution (Golombek and Rapp 1997).
+    pub fn on(map: &Terrain) -> Self {
+        let shown = terrain::cumulative_rock_area(MANY_ROCKS, Rock::MAPPED_DIAMETER_M);
+        if map.mapped_rock_share() > shown { Self::Many } else { Self::Some }
+    }
+
+    const fn detour_m(self, followers: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Some => DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers,
+            Self::Many => DETOUR_AMONG_MANY_M + DETOUR_FOR_FOLLOWER_M * followers,
+        }
+    }
+
+    const fn around_m(self, followers: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Some => AROUND_ROCKS_M * (1.0 + followers),
+            Self::Many => AROUND_MANY_ROCKS_M * (1.0 + followers),
+        }
+    }
+
+    const fn less_m(self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Some | Self::Many => LESS_AROUND_ROCKS_M,
+        }
+    }
+}
+
 /// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it: it goes around
-/// its followers where it turns back, and around rocks that the map does not show, if `leaves_out_rocks`. Measured: see
+/// its followers where it turns back, and around rocks that the map does not show. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
-pub fn driven_at_most_m(length_m: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
+pub fn driven_at_most_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> f64 {
     if length_m > 0.0 {
         let followers = followers as f64;
-        let rocks_m = if leaves_out_rocks { DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers } else { 0.0 };
+        let rocks_m = rocks.detour_m(followers);
         length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers + rocks_m
     } else {
         0.0
@@ -154,12 +197,12 @@ pub fn driven_at_most_m(length_m: f64, followers: usize, leaves_out_rocks: bool)
 }
 
 /// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at
-/// corners, and goes around what the map does not show, if `leaves_out_rocks`; followers have to sort themselves out.
-/// `speed_mps` is the greatest speed of the traverse. Measured in the same way.
-pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
+/// corners, and goes around what the map does not show; followers have to sort themselves out. `speed_mps` is the greatest
+/// speed of the traverse. Measured in the same way.
+pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, rocks: HiddenRocks) -> f64 {
     if least_s > 0.0 {
         let followers = followers as f64;
-        let rocks_m = if leaves_out_rocks { AROUND_ROCKS_M * (1.0 + followers) } else { 0.0 };
+        let rocks_m = rocks.around_m(followers);
         least_s * (1.0 + LONGER_SHARE) + LONGER_S + (LONGER_FOR_FOLLOWER_M * followers + rocks_m) / speed_mps
     } else {
         0.0
@@ -168,9 +211,8 @@ pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, leaves_ou
 
 /// How far it drives at least: it cuts corners, and has arrived a little before the path's end, or as near to it as its
 /// followers leave it room; the way around rocks may be shorter than the path. Measured in the same way.
-pub fn driven_at_least_m(length_m: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
-    let rocks_m = if leaves_out_rocks { LESS_AROUND_ROCKS_M } else { 0.0 };
-    let less_m = LESS_M + LESS_FOR_FOLLOWER_M * followers as f64 + rocks_m;
+pub fn driven_at_least_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> f64 {
+    let less_m = LESS_M + LESS_FOR_FOLLOWER_M * followers as f64 + rocks.less_m();
     (length_m * (1.0 - LESS_SHARE) - less_m).max(0.0)
 }
 

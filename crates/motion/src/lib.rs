@@ -39,7 +39,9 @@ mod vehicle;
 mod way_around;
 
 pub use convoy::{Convoy, ConvoyMember, OtherVehicle, Surroundings};
-pub use driver::{DriveEvent, Driver, DriverSettings, driven_at_least_m, driven_at_most_m, driven_within_s};
+pub use driver::{
+    DriveEvent, Driver, DriverSettings, HiddenRocks, driven_at_least_m, driven_at_most_m, driven_within_s,
+};
 pub use fine_world::FineWorld;
 pub use formation::Formation;
 pub use leg::{Leg, find_shortest_path, plan_leg};
@@ -59,3 +61,4 @@ pub use trace::{GrownVertex, GrowthStep, GrowthTrace, TracedSearch, trace};
 pub use trajectory::{DriveLimits, MotionState, TimedState, Trajectory, drive_path, heading_difference};
 pub use tree::{Root, Tree, Vertex};
 pub use vehicle::{Drive, VEHICLE_MODELS, VehicleModel, vehicle_model};
+pub use way_around::way_over_cells;

@@ -11,6 +11,8 @@ use std::collections::BinaryHeap;
 use nalgebra::{Point2, distance};
 use terrain::{Cell, ConfigurationSpace};
 
+use crate::path::Path;
+
 /// How much more the rest of the way counts than the way so far: places nearer to the goal go first, and the way found
 /// is at most this share longer than the shortest one over these places.
 const EAGERNESS: f64 = 0.03;
@@ -27,6 +29,12 @@ pub(crate) fn way_around(
     let start = blocks.block_of(space.frame().cell_at(ends_m[0])?)?;
     let goal = blocks.block_of(space.frame().cell_at(ends_m[1])?)?;
     (start != goal).then(|| Lattice::new(space, blocks, ends_m, [start, goal], bound_m).search()).flatten()
+}
+
+/// A free path between two places that is shorter than `bound_m`, found by looking at every cell: where trees do not get
+/// through. Time is proportional to the cells within the ellipse of such paths.
+pub fn way_over_cells(space: &ConfigurationSpace, ends_m: [Point2<f64>; 2], bound_m: f64) -> Option<Path> {
+    way_around(space, ends_m, bound_m, u32::MAX).map(Path::new)
 }
 
 /// Square blocks of cells over a box of the map.

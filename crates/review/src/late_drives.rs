@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use controllability::{PlanNetwork, Source, plan_network};
 use exact::{Bound, Overflow, Scale, Time};
 use snapshot::Snapshot;
-use snapshot::vehicle::{flies, model_of, moving};
+use snapshot::vehicle::{model_of, moving};
 use stn::PointId;
 use tpn::{ArcId, ArcKind, Network, OccurrenceId, Plan};
 
@@ -71,9 +71,7 @@ pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: 
     let models = traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
     let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
     let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
-    let drives = traverse.vehicles.iter().any(|&vehicle| !flies(&program.world, vehicle));
-    let leaves_out_rocks = drives && program.world.terrain.is_some();
-    motion::driven_within_s(least * unit_s, speed_mps, traverse.company as usize, leaves_out_rocks)
+    motion::driven_within_s(least * unit_s, speed_mps, traverse.company as usize, traverse.rocks)
 }
 
 /// How long a drive takes at its longest.

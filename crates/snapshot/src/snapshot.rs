@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use exact::{Bound, Time};
-use motion::{GrowthTrace, Path};
+use motion::{GrowthTrace, HiddenRocks, Path};
 use nalgebra::Point2;
 use rmpl::program::{Program, World};
 use rmpl::spans::Spans;
@@ -115,6 +115,8 @@ pub struct Traverse {
     pub length_m: f64,
     /// The least distance from the path of any of its vehicles to an obstacle, in meters, beyond the radius of the widest.
     pub clearance_m: f64,
+    /// How many rocks it may meet that the map does not show.
+    pub rocks: HiddenRocks,
     /// Where a rock that the map does not show could close its path, so that the way around is long
     /// (`motion::narrow_passage`); in meters.
     pub narrow_m: Option<Point2<f64>>,

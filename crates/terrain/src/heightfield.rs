@@ -18,6 +18,8 @@ pub struct Terrain {
     /// Whether each cell is an obstacle; empty when none is.
     obstacles: Vec<bool>,
     rocks: Vec<Rock>,
+    /// The area that rocks on the map cover, in square meters.
+    mapped_rock_m2: f64,
 }
 
 impl Terrain {
@@ -33,7 +35,7 @@ impl Terrain {
             no_data = heights_m.iter().map(|height| !height.is_finite()).collect();
             heights_m.iter_mut().filter(|height| !height.is_finite()).for_each(|height| *height = 0.0);
         }
-        Self { frame, heights_m, no_data, obstacles: Vec::new(), rocks: Vec::new() }
+        Self { frame, heights_m, no_data, obstacles: Vec::new(), rocks: Vec::new(), mapped_rock_m2: 0.0 }
     }
 
     /// A level map at height 0.
@@ -54,6 +56,8 @@ impl Terrain {
 
     /// The map with rocks on it. They don't change the heights.
     pub fn with_rocks(mut self, rocks: Vec<Rock>) -> Self {
+        let area_m2 = |rock: &Rock| 0.25 * std::f64::consts::PI * rock.diameter_m * rock.diameter_m;
+        self.mapped_rock_m2 = rocks.iter().filter(|rock| rock.is_mapped()).map(area_m2).sum();
         self.rocks = rocks;
         self
     }
@@ -83,6 +87,13 @@ impl Terrain {
     /// on the spot sees ([`Rock::is_mapped`]).
     pub fn rocks(&self) -> &[Rock] {
         &self.rocks
+    }
+
+    /// The share of the ground that rocks on the map cover: it tells how many there are that the map does not show
+    /// ([`cumulative_rock_area`](crate::cumulative_rock_area)).
+    pub fn mapped_rock_share(&self) -> f64 {
+        let extent_m = self.frame.extent_m();
+        self.mapped_rock_m2 / (extent_m.x * extent_m.y)
     }
 
     /// Whether a cell has no height.

@@ -2,6 +2,7 @@
 
 use snapshot::ground::closed_to;
 use snapshot::vehicle;
+use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 use exact::{Rational, Time};
@@ -55,8 +56,12 @@ const HEARD_M: f64 = 1.5;
 const LONG_SHARE: f64 = 1.5;
 const LONG_M: f64 = 10.0;
 const SAVED_SHARE: f64 = 0.7;
-/// Samples of a search for another way, the places near the vehicle from which it is searched at most, and meters between them.
+/// Samples of a search for another way. Where it finds none, cells show ways up to so many times as long as the straight line,
+/// and so many meters more.
 const MAX_SAMPLES: u32 = 5_000;
+const BOUND_SHARE: f64 = 2.0;
+const BOUND_M: f64 = 60.0;
+/// The places near the vehicle from which it is searched at most, and meters between them.
 const STARTS: u32 = 4;
 const STARTS_APART_M: f64 = 0.6;
 /// How finely the ways of others are put on a map, in meters.
@@ -503,7 +508,8 @@ impl<'a> Trip<'a> {
         }
         let rooms_m = [0.3, model.margin_m, 0.0];
         let maps = self.apart_from_others(&shared).into_iter().chain([shared, occupancy]);
-        let spaces: Vec<_> = maps.map(|map| ConfigurationSpace::new(map, model.circumradius_m)).collect();
+        let space = |map| LazyCell::new(move || ConfigurationSpace::new(map, model.circumradius_m));
+        let spaces: Vec<_> = maps.map(space).collect();
         let found = rests_m.into_iter().find_map(|rest_m| {
             let after = rest_of(&path, path.length_m() - rest_m);
             let &goal_m =
@@ -755,7 +761,9 @@ fn way_within(space: &ConfigurationSpace, here: Point2<f64>, goal_m: Point2<f64>
         let query = Query { start_m, goal_m: end_m };
         let shortcut = ShortcutSettings::default();
         let found = motion::find_shortest_path(space, query, &settings, &shortcut, 3, &mut |_| false);
-        Some((start_m, found.path.ok()?))
+        let bound_m = BOUND_SHARE * distance(&start_m, &end_m) + BOUND_M;
+        let way = found.path.ok().or_else(|| motion::way_over_cells(space, [start_m, end_m], bound_m))?;
+        Some((start_m, way))
     })?;
     if start_m != here {
         way.points_m.insert(0, here);

@@ -57,7 +57,6 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
     let on_dunes = (0..6).chain([41, 178, 203]).map(|seed| (DUNES, seed));
     for (ground, seed) in on_plain.chain(on_dunes) {
         let (source, speed_mps) = random_mission(ground, seed);
-        let has_map = source.contains("terrain");
         Mission::read(&source).with_plan((Options::default(), seed), |problem, planned, grounds, paths| {
             // A place in an obstacle, or one that no path reaches.
             let Some(ran) = execution::execute(problem, &planned, &Script::default(), grounds, paths) else { return };
@@ -70,8 +69,8 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                 }
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
                 let bounds = [
-                    motion::driven_at_least_m(length_m, followers, has_map),
-                    motion::driven_at_most_m(length_m, followers, has_map),
+                    motion::driven_at_least_m(length_m, followers, traverse.rocks),
+                    motion::driven_at_most_m(length_m, followers, traverse.rocks),
                 ];
                 assert!(
                     (bounds[0]..=bounds[1]).contains(&drive.driven_m),
@@ -79,7 +78,7 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                     drive.driven_m
                 );
                 let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
-                let within_s = motion::driven_within_s(least * 60.0, speed_mps, followers, has_map);
+                let within_s = motion::driven_within_s(least * 60.0, speed_mps, followers, traverse.rocks);
                 let took_s = duration.to_f64() * 60.0;
                 assert!(took_s <= within_s, "seed {seed}: {took_s} s, where {within_s} s are counted\n{source}");
                 drives += 1;

@@ -96,7 +96,7 @@ fn what_a_path_takes_for_each_meter_counts() {
     let taken = 50.0 - low.to_f64();
     // What drivers need beyond their paths is counted too, for each of the two.
     let counted_m: f64 =
-        there_and_back.traverses.iter().map(|it| motion::driven_at_most_m(it.length_m, 0, true)).sum();
+        there_and_back.traverses.iter().map(|it| motion::driven_at_most_m(it.length_m, 0, it.rocks)).sum();
     assert!((taken - 0.5 * counted_m).abs() < 0.01, "{taken} for {counted_m} m");
     assert!(counted_m > plan.quality.length_m);
     let outcome = mission("15").planning.outcome.clone();
