@@ -1009,7 +1009,7 @@ pub(crate) fn conclude(
                 clearance_m: clearances_m.fold(f64::INFINITY, f64::min),
                 rocks,
                 narrow_m: (rocks != HiddenRocks::None)
-                    .then(|| motion::narrow_passage(space, &path))
+                    .then(|| tracks.iter().find_map(|track| motion::narrow_passage(space, track)))
                     .flatten(),
                 slope_max_rad: slopes_rad.fold(0.0, f64::max),
                 leg_figures: figures(problem, &route, legs, map, space),

@@ -115,11 +115,11 @@ impl DemandLines<'_> {
         self.network.uses.iter().filter(is_driven).map(|used| used.owner)
     }
 
-    /// The name of a drive whose path one rock could close, if it is one.
-    fn narrow(&self, drive: OccurrenceId) -> Option<&str> {
-        let is_narrow = |it: &Traverse| it.occurrence == drive && it.narrow_m.is_some();
+    /// The name of a drive whose path rocks could close, if it is one.
+    fn closable(&self, drive: OccurrenceId) -> Option<&str> {
+        let is_closable = |it: &Traverse| it.occurrence == drive && it.may_be_closed();
         let name = || self.network.occurrences[drive.index()].name.as_str();
-        self.traverses.iter().any(is_narrow).then(name)
+        self.traverses.iter().any(is_closable).then(name)
     }
 
     fn requirements(&self) -> Option<Line> {
@@ -263,7 +263,7 @@ impl DemandLines<'_> {
 
     fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
         let name = resource.name.as_str();
-        let mut narrow = BTreeSet::new();
+        let mut closable = BTreeSet::new();
         let (mut text, spare, room) = match (resource.supply, levels) {
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
                 let spare = capacity.checked_sub(peak)?;
@@ -297,16 +297,16 @@ impl DemandLines<'_> {
                 if drives.peek().is_some() {
                     text.push_str("; for every distance that drives may take along their paths");
                 }
-                narrow = drives.flatten().filter_map(|drive| self.narrow(drive)).collect();
+                closable = drives.flatten().filter_map(|drive| self.closable(drive)).collect();
                 (text, spare, Some(room))
             }
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
         let mut status = if is_short { Status::Failed } else { self.status };
-        if !narrow.is_empty() {
-            let narrow: Vec<&str> = narrow.into_iter().collect();
-            text.push_str(&format!("; {} may drive farther: {CLOSED}", narrow.join(", ")));
+        if !closable.is_empty() {
+            let names: Vec<&str> = closable.into_iter().collect();
+            text.push_str(&format!("; {} may drive farther: {CLOSED}", names.join(", ")));
             status = status.max(Status::Attention);
         }
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());

@@ -218,18 +218,18 @@ fn controllability(
             late.iter().map(|drive| network.occurrences[drive.index()].name.as_str()).collect();
         text.push_str(&format!("; slow driving in {} {LATE}", names.join(", ")));
     }
-    let narrow = snapshot.traverses.iter().filter(|it| it.narrow_m.is_some());
-    let narrow: Vec<&str> =
-        narrow.map(|it| network.occurrences[it.occurrence.index()].name.as_str()).collect();
-    let has_narrow = is_checked && !narrow.is_empty();
-    if has_narrow {
-        text.push_str(&format!("; {} may take longer: {CLOSED}", narrow.join(", ")));
+    let closable = snapshot.traverses.iter().filter(|it| it.may_be_closed());
+    let closable: Vec<&str> =
+        closable.map(|it| network.occurrences[it.occurrence.index()].name.as_str()).collect();
+    let may_be_closed = is_checked && !closable.is_empty();
+    if may_be_closed {
+        text.push_str(&format!("; {} may take longer: {CLOSED}", closable.join(", ")));
     }
     let has_meetings = is_checked && !snapshot.separation_violations.is_empty();
     if has_meetings {
         text.push_str("; vehicles that come too close may delay each other beyond that");
     }
-    let is_sure = !is_late && !has_narrow && !has_meetings;
+    let is_sure = !is_late && !may_be_closed && !has_meetings;
     let status = if is_sure { status } else { status.max(Status::Attention) };
     Some(places.line(status, text, None, names, nodes))
 }

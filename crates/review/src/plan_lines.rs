@@ -28,7 +28,7 @@ pub(super) const LATE: &str = "may make the plan late";
 const IN_THE_WAY: &str = "may be in its way";
 
 /// What lines say of drives that may have to take another path, which may be longer than plans count.
-pub(super) const CLOSED: &str = "a rock that the map does not show could close its path";
+pub(super) const CLOSED: &str = "rocks that the map does not show could close its path";
 
 /// Whether the line of a drive says that the plan may be late because of it.
 pub(super) fn may_be_late(line: &Line) -> bool {
@@ -385,7 +385,7 @@ impl<'input> PlanLines<'input> {
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
-            _ if is_late || !others.is_empty() || traverse.narrow_m.is_some() => Status::Attention,
+            _ if is_late || !others.is_empty() || traverse.may_be_closed() => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -416,9 +416,11 @@ impl<'input> PlanLines<'input> {
         if !others.is_empty() {
             driving.push_str(&format!("; {} {IN_THE_WAY}", others.join(", ")));
         }
+        if traverse.may_be_closed() {
+            driving.push_str(&format!("; {CLOSED}"));
+        }
         if let Some(place_m) = traverse.narrow_m {
-            let (x, y) = (place_m.x.round(), place_m.y.round());
-            driving.push_str(&format!("; {CLOSED} near ({x}, {y}), and another one is long"));
+            driving.push_str(&format!(" near ({}, {})", place_m.x.round(), place_m.y.round()));
         }
         let text = format!(
             "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",

@@ -302,7 +302,7 @@ fn what_depends_on_a_path_that_a_rock_could_close_has_not_passed() {
     };
     for line in lines(&through_a_gap(terrain, 4)) {
         assert_eq!(line.status, Status::Attention, "{line:?}");
-        assert!(line.text.contains("a rock that the map does not show could close its path"), "{line:?}");
+        assert!(line.text.contains("rocks that the map does not show could close its path"), "{line:?}");
     }
     for (terrain, gap_m) in [(terrain, 12), ("", 4)] {
         for line in lines(&through_a_gap(terrain, gap_m)) {

@@ -117,7 +117,7 @@ pub struct Traverse {
     pub clearance_m: f64,
     /// How many rocks it may meet that the map does not show.
     pub rocks: HiddenRocks,
-    /// Where a rock that the map does not show could close its path, so that the way around is long
+    /// Where a rock that the map does not show could close the path of one of its vehicles, so that the way around is long
     /// (`motion::narrow_passage`); in meters.
     pub narrow_m: Option<Point2<f64>>,
     /// The steepest slope along the path of any of its vehicles, in radians.
@@ -126,6 +126,14 @@ pub struct Traverse {
     pub leg_figures: Vec<PathFigures>,
     /// How many others its leader drives with, or drove with when it came to where it starts.
     pub company: u32,
+}
+
+impl Traverse {
+    /// Whether rocks that the map does not show could close its path, so that it may take longer than drivers were measured to
+    /// take.
+    pub fn may_be_closed(&self) -> bool {
+        self.narrow_m.is_some() || self.rocks == HiddenRocks::Many
+    }
 }
 
 /// What a path comes to.
