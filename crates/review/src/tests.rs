@@ -282,8 +282,8 @@ fn through_a_gap(terrain: &str, gap_m: i64) -> Review {
     let (south, north) = (60 - gap_m / 2, 60 + gap_m / 2);
     reviewed(&format!(
         "{terrain} location A (30, 60); location B (66, 60); vehicle R : ATRV-Jr at A; resource Battery 0..200 = 100;
-        obstacle NORTH polygon (46, {north}) (50, {north}) (50, 110) (46, 110);
-        obstacle SOUTH polygon (46, 10) (50, 10) (50, {south}) (46, {south});
+        obstacle NORTH polygon (46, {north}, 50, {north}, 50, 110, 46, 110);
+        obstacle SOUTH polygon (46, 10, 50, 10, 50, {south}, 46, {south});
         primitive Drive(to) contingent [5,60] moves R speed (0.01, 0.5) consumes Battery 1 per metre; scenario S[0,100] = {{ Drive(B) }}"
     ))
 }
