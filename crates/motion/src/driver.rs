@@ -124,14 +124,14 @@ const MAX_STEP_S: f64 = 20.0;
 const MORE_SHARE: f64 = 0.04;
 const MORE_M: f64 = 1.5;
 const MORE_FOR_FOLLOWER_M: f64 = 2.0;
-const DETOUR_M: f64 = 20.0;
+const DETOUR_M: f64 = 30.0;
 const DETOUR_AMONG_MANY_M: f64 = 60.0;
 const DETOUR_FOR_FOLLOWER_M: f64 = 5.0;
 /// What it needs more time than its path, as a share of it, in seconds, and in meters that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
 const LONGER_S: f64 = 20.0;
 const LONGER_FOR_FOLLOWER_M: f64 = 10.0;
-const AROUND_ROCKS_M: f64 = 30.0;
+const AROUND_ROCKS_M: f64 = 40.0;
 const AROUND_MANY_ROCKS_M: f64 = 90.0;
 /// Where rocks cover this share of the ground altogether, many are not on the map.
 const MANY_ROCKS: f64 = 0.075;

@@ -4,6 +4,7 @@ use snapshot::ground::closed_to;
 use snapshot::vehicle;
 use std::cell::LazyCell;
 use std::collections::BTreeMap;
+use std::ops::Deref;
 
 use exact::{Rational, Time};
 use executive::Disturbance;
@@ -51,11 +52,14 @@ const BESIDE_M: f64 = 0.3;
 const KNOWN_M: f64 = 0.9;
 /// What sonars hear continues the map from this near on, in meters.
 const HEARD_M: f64 = 1.5;
-/// Another way is long if it is so many times as long as the straight line to its end, and so many meters more; less room is
-/// worth it if the way is then at most this share as long.
-const LONG_SHARE: f64 = 1.5;
-const LONG_M: f64 = 10.0;
-const SAVED_SHARE: f64 = 0.7;
+/// A vehicle that is blocked again within so many meters got no farther: its way is closed to it so far ahead, and so far around.
+const SAME_PLACE_M: f64 = 0.5;
+const CLOSED_AHEAD_M: f64 = 1.2;
+const CLOSED_M: f64 = 0.4;
+/// Another way is long if it is so many meters longer than the straight line to its end; less room is worth it if that saves so
+/// many meters.
+const LONG_M: f64 = 8.0;
+const SAVED_M: f64 = 5.0;
 /// Samples of a search for another way. Where it finds none, cells show ways up to so many times as long as the straight line,
 /// and so many meters more.
 const MAX_SAMPLES: u32 = 5_000;
@@ -174,6 +178,9 @@ pub(super) struct Trip<'a> {
     pub(super) seen: SeenMap,
     /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
+    /// Where each vehicle was blocked last, and where its way is closed to it because it got no farther there.
+    blocked_m: Vec<Option<Point2<f64>>>,
+    closed_m: Vec<Vec<Point2<f64>>>,
     /// How each follower was led around something last.
     led_around: Vec<Option<LedAround>>,
 }
@@ -327,6 +334,8 @@ impl<'a> Trip<'a> {
             flies,
             seen: SeenMap::default(),
             leg_ends_m: course.leg_ends_m.clone(),
+            blocked_m: vec![None; count],
+            closed_m: vec![Vec::new(); count],
             led_around: vec![None; count],
         }
     }
@@ -468,6 +477,12 @@ impl<'a> Trip<'a> {
         };
         let here = driver.state().position_m;
         let model = self.models[vehicle];
+        // A way on which it got no farther is closed to it.
+        let is_same = |before: &Point2<f64>| distance(before, &here) <= SAME_PLACE_M;
+        if self.blocked_m[vehicle].replace(here).as_ref().is_some_and(is_same) {
+            let ahead = driver.path().point_at(driver.progress_m() + CLOSED_AHEAD_M);
+            self.closed_m[vehicle].extend(ahead.map(|(place, _)| place));
+        }
         let mut occupancy = self.course.drive.space.occupancy().clone();
         for point in driver.seen_m() {
             occupancy.mark(&Obstacle::Circle { center_m: point, radius_m: 0.0 }, CellState::Obstacle);
@@ -506,18 +521,20 @@ impl<'a> Trip<'a> {
         for &center_m in &self.known {
             shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
+        for &center_m in &self.closed_m[vehicle] {
+            shared.mark(&Obstacle::Circle { center_m, radius_m: CLOSED_M }, CellState::Obstacle);
+        }
         let rooms_m = [0.3, model.margin_m, 0.0];
-        let maps = self.apart_from_others(&shared).into_iter().chain([shared, occupancy]);
+        let maps = self.apart_from_others(&shared).into_iter().chain([shared]);
         let space = |map| LazyCell::new(move || ConfigurationSpace::new(map, model.circumradius_m));
-        let spaces: Vec<_> = maps.map(space).collect();
+        let shared: Vec<_> = maps.map(space).collect();
+        let own = [space(occupancy)];
         let found = rests_m.into_iter().find_map(|rest_m| {
             let after = rest_of(&path, path.length_m() - rest_m);
             let &goal_m =
                 after.first().filter(|place| rest_m <= 0.0 || vehicle == 0 || !is_taken(**place))?;
-            let seed = self.reroutes;
-            let mut ways =
-                spaces.iter().filter_map(|space| way_between(space, rooms_m, here, goal_m, &model, seed));
-            Some((ways.next()?, after))
+            let way = |spaces: &[_]| way_between(spaces, &rooms_m, [here, goal_m], &model, self.reroutes);
+            Some((way(&shared).or_else(|| way(&own))?, after))
         });
         let Some((mut way, after)) = found else { return Err(stuck) };
         let length_m = way.length_m();
@@ -584,7 +601,8 @@ impl<'a> Trip<'a> {
             occupancy.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
         let maps = self.apart_from_others(&occupancy).into_iter().chain([occupancy]);
-        let spaces: Vec<_> = maps.map(|map| ConfigurationSpace::new(map, model.radius_m())).collect();
+        let spaces: Vec<_> =
+            maps.map(|map| Box::new(ConfigurationSpace::new(map, model.radius_m()))).collect();
         let (mut points, mut ends_m, mut from_m) = (Vec::new(), Vec::new(), 0.0);
         let mut is_new = false;
         let length_m = path.length_m();
@@ -595,8 +613,7 @@ impl<'a> Trip<'a> {
             let mut piece = rest_of(&before, from_m);
             if let (true, Some(&start_m), Some(&goal_m)) =
                 (is_blocked(&piece, &self.known, reach), piece.first(), piece.last())
-                && let Some(way) =
-                    spaces.iter().find_map(|space| way_between(space, [0.0, 0.1], start_m, goal_m, model, 0))
+                && let Some(way) = way_between(&spaces, &[0.0, 0.1], [start_m, goal_m], model, 0)
             {
                 piece = way.points_m;
                 is_new = true;
@@ -716,25 +733,24 @@ impl<'a> Trip<'a> {
     }
 }
 
-/// A way from a place to another one, with the first of some rooms around the vehicle that leaves one; with less room where
-/// that saves a long way around.
-fn way_between<const COUNT: usize>(
-    space: &ConfigurationSpace,
-    rooms_m: [f64; COUNT],
-    here: Point2<f64>,
-    goal_m: Point2<f64>,
+/// A way from a place to another one on the first of some maps that has one, with the first of some rooms around the vehicle that
+/// leaves one; on a later map or with less room where that saves a long way around.
+fn way_between<Space: Deref<Target = ConfigurationSpace>>(
+    spaces: &[Space],
+    rooms_m: &[f64],
+    [here, goal_m]: [Point2<f64>; 2],
     model: &VehicleModel,
     seed: u32,
 ) -> Option<Path> {
-    let long_m = LONG_SHARE * distance(&here, &goal_m) + LONG_M;
+    let long_m = distance(&here, &goal_m) + LONG_M;
     let mut best: Option<Path> = None;
-    for room_m in rooms_m {
+    for (space, room_m) in spaces.iter().flat_map(|space| rooms_m.iter().map(move |room_m| (space, room_m))) {
         if best.as_ref().is_some_and(|best| best.length_m() <= long_m) {
             break;
         }
         let space = space.with_radius_m(model.circumradius_m + room_m);
         if let Some(way) = way_within(&space, here, goal_m, seed)
-            && best.as_ref().is_none_or(|best| way.length_m() < SAVED_SHARE * best.length_m())
+            && best.as_ref().is_none_or(|best| way.length_m() + SAVED_M < best.length_m())
         {
             best = Some(way);
         }
