@@ -321,7 +321,7 @@ fn a_reservoir_has_room_for_detours_where_the_map_may_leave_out_rocks() {
         reasons.contains("depending on the distance that is really driven, Drive#1 takes 28."),
         "{reasons}"
     );
-    for (terrain, level) in [(terrain, 60), ("", 45)] {
+    for (terrain, level) in [(terrain, 70), ("", 45)] {
         let enough = driving(terrain, level).resources[0].line.clone();
         assert_eq!(enough.status, Status::Passed, "{enough:?}");
         assert!(

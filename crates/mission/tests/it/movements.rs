@@ -89,11 +89,11 @@ fn what_a_path_takes_for_each_meter_counts() {
             "resource Battery 0..100 = {level}; {drive} scenario X[0,60] = {{ Drive(A); Drive(BASE) }}"
         ))
     };
-    let there_and_back = mission("50");
+    let there_and_back = mission("70");
     assert_driven_one_after_the_other(&there_and_back, 2);
     let plan = &there_and_back.planning.outcome.plans[0];
     let Levels::Range { low, .. } = plan.levels[0] else { panic!("{:?}", plan.levels) };
-    let taken = 50.0 - low.to_f64();
+    let taken = 70.0 - low.to_f64();
     // What drivers need beyond their paths is counted too, for each of the two.
     let counted_m: f64 =
         there_and_back.traverses.iter().map(|it| motion::driven_at_most_m(it.length_m, 0, it.rocks)).sum();
@@ -148,10 +148,10 @@ fn the_shortest_order_is_tried_where_meters_take_too_much() {
              scenario X[0,600] = {{ unordered {{ Drive(A); Drive(B); Drive(C); Drive(D); Drive(E) }} }}"
         ))
     };
-    let tight = sites("240");
+    let tight = sites("290");
     assert_driven_one_after_the_other(&tight, 5);
     assert_eq!(tight.planning.outcome.plans[0].quality.is_optimal, None);
-    assert!(sites("220").planning.outcome.failure.is_some(), "the shortest way needs more");
+    assert!(sites("270").planning.outcome.failure.is_some(), "the shortest way needs more");
 }
 
 /// What meters take of a battery is known before an order is chosen, and what is called optimal is.
