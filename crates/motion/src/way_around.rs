@@ -233,3 +233,34 @@ impl<'a> Lattice<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use terrain::{CellState, GridFrame, Obstacle, Occupancy};
+
+    use super::*;
+
+    /// A wall of 60 m with one gap, 4 m wide and 20 m from its end.
+    fn wall_with_a_gap() -> ConfigurationSpace {
+        let mut map = Occupancy::free(GridFrame::new(100, 100, 0.6));
+        for (south, north) in [(0.0, 18.0), (22.0, 60.0)] {
+            let corners = [[29.0, south], [31.0, south], [31.0, north], [29.0, north]];
+            let wall = Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() };
+            map.mark(&wall, CellState::Obstacle);
+        }
+        ConfigurationSpace::new(map, 1.2)
+    }
+
+    #[test]
+    fn a_way_over_cells_leads_through_a_gap_and_is_as_short_as_asked() {
+        let space = wall_with_a_gap();
+        let ends_m = [Point2::new(10.0, 50.0), Point2::new(50.0, 50.0)];
+        let way = way_over_cells(&space, ends_m, 100.0).expect("there is a gap");
+        assert_eq!([way.points_m.first(), way.points_m.last()], [Some(&ends_m[0]), Some(&ends_m[1])]);
+        assert!(way.is_free(&space), "{way:?}");
+        // Straight to the gap and back are 72 m.
+        assert!((70.0..76.0).contains(&way.length_m()), "{} m", way.length_m());
+        assert!(way_over_cells(&space, ends_m, 60.0).is_none(), "it is longer");
+        assert!(way_over_cells(&space.with_radius_m(2.5), ends_m, 100.0).is_none(), "the gap is too narrow");
+    }
+}

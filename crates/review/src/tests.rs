@@ -332,6 +332,15 @@ fn a_reservoir_has_room_for_detours_where_the_map_may_leave_out_rocks() {
 }
 
 #[test]
+fn no_drive_passes_on_very_rocky_ground() {
+    let review = driving("terrain \"noachian-highland\" cell 0.6 origin (0, 0);", 150);
+    for line in [&review.traverses[0].line, &review.resources[0].line] {
+        assert_eq!(line.status, Status::Attention, "{line:?}");
+        assert!(line.text.contains("rocks that the map does not show could close its path"), "{line:?}");
+    }
+}
+
+#[test]
 fn nothing_about_states_and_resources_has_passed_on_the_planner_s_word() {
     for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {
         let review = reviewed_with(LASTING, verdict);

@@ -484,9 +484,7 @@ impl<'a> Trip<'a> {
             self.closed_m[vehicle].extend(ahead.map(|(place, _)| place));
         }
         let mut occupancy = self.course.drive.space.occupancy().clone();
-        for point in driver.seen_m() {
-            occupancy.mark(&Obstacle::Circle { center_m: point, radius_m: 0.0 }, CellState::Obstacle);
-        }
+        mark(&mut occupancy, driver.seen_m(), 0.0);
         let remaining_m = driver.length_m() - driver.progress_m();
         let (path, ends_m) = (driver.path().clone(), &self.leg_ends_m);
         let total_m = ends_m.last().copied().unwrap_or(0.0);
@@ -518,12 +516,8 @@ impl<'a> Trip<'a> {
         }
         // What others have seen counts while it leaves a way: whole cells are taken for what fills a part of them.
         let mut shared = occupancy.clone();
-        for &center_m in &self.known {
-            shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
-        }
-        for &center_m in &self.closed_m[vehicle] {
-            shared.mark(&Obstacle::Circle { center_m, radius_m: CLOSED_M }, CellState::Obstacle);
-        }
+        mark(&mut shared, self.known.iter().copied(), 0.0);
+        mark(&mut shared, self.closed_m[vehicle].iter().copied(), CLOSED_M);
         let rooms_m = [0.3, model.margin_m, 0.0];
         let maps = self.apart_from_others(&shared).into_iter().chain([shared]);
         let space = |map| LazyCell::new(move || ConfigurationSpace::new(map, model.circumradius_m));
@@ -564,12 +558,8 @@ impl<'a> Trip<'a> {
         for Lane { path, radius_m } in self.lanes {
             let length_m = path.length_m();
             let steps = (length_m / LANE_STEP_M).ceil() as u32;
-            for step in 0..=steps {
-                let along_m = (f64::from(step) * LANE_STEP_M).min(length_m);
-                let Some((center_m, _)) = path.point_at(along_m) else { continue };
-                let around = Obstacle::Circle { center_m, radius_m: radius_m + BESIDE_M };
-                occupancy.mark(&around, CellState::Obstacle);
-            }
+            let place = |step| path.point_at((f64::from(step) * LANE_STEP_M).min(length_m));
+            mark(&mut occupancy, (0..=steps).filter_map(place).map(|(place, _)| place), radius_m + BESIDE_M);
         }
         Some(occupancy)
     }
@@ -597,9 +587,7 @@ impl<'a> Trip<'a> {
             return;
         }
         let mut occupancy = self.course.drive.space.occupancy().clone();
-        for &center_m in &self.known {
-            occupancy.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
-        }
+        mark(&mut occupancy, self.known.iter().copied(), 0.0);
         let maps = self.apart_from_others(&occupancy).into_iter().chain([occupancy]);
         let spaces: Vec<_> =
             maps.map(|map| Box::new(ConfigurationSpace::new(map, model.radius_m()))).collect();
@@ -730,6 +718,13 @@ impl<'a> Trip<'a> {
             };
             self.frames[index].push(frame);
         }
+    }
+}
+
+/// Puts round obstacles on a map.
+fn mark(map: &mut Occupancy, centers_m: impl IntoIterator<Item = Point2<f64>>, radius_m: f64) {
+    for center_m in centers_m {
+        map.mark(&Obstacle::Circle { center_m, radius_m }, CellState::Obstacle);
     }
 }
 
