@@ -219,6 +219,9 @@ pub struct TraverseReview {
     pub slope_max_rad: f64,
     /// What the vehicles can climb, in radians; `None` in the air.
     pub slope_limit_rad: Option<f64>,
+    /// Whether it may end later than the plan counts on, or not at all.
+    #[serde(default)]
+    pub may_be_late: bool,
 }
 
 /// How long something takes in the schedules of a plan, in mission units.

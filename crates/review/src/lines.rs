@@ -27,13 +27,16 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         (Some(network), Some(plan)) => late_drives(snapshot, network, plan),
         _ => BTreeSet::new(),
     };
+    let mut lines = PlanLines::new(snapshot, &late, &places);
+    let scattered = lines.as_ref().map(PlanLines::scattered_formations).unwrap_or_default();
+    let unsure = Unsure { late: &late, sets_out: scattered.is_empty() };
     let mut review = Review {
         content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
         plan_hash: plan_hash(snapshot),
         rules: FlightRules::default(),
         unit: unit(snapshot).to_owned(),
         status: Status::Passed,
-        plan: plan_section(snapshot, &late, &places),
+        plan: plan_section(snapshot, unsure, &places),
         choices: Vec::new(),
         causal_links: Vec::new(),
         conflicts: Vec::new(),
@@ -50,13 +53,13 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         mission_rules: Vec::new(),
         warnings: warnings(snapshot, &places),
     };
-    if let Some(mut lines) = PlanLines::new(snapshot, &late, &places) {
+    if let Some(lines) = &mut lines {
         review.choices = lines.choices(stop);
         review.causal_links = lines.causal_links();
         review.conflicts = lines.conflicts();
         review.states = lines.demands().states();
         review.states.extend(lines.short_of_their_goals());
-        review.separation_violations.extend(lines.scattered_formations());
+        review.separation_violations.extend(scattered);
         review.resources = lines.demands().resources();
         review.overlaps = lines.overlaps();
         review.durations = lines.durations();
@@ -123,7 +126,16 @@ pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
 /// How the line of a strongly controllable plan begins.
 pub(crate) const STRONG: &str = "strongly controllable: ";
 
-fn plan_section(snapshot: &Snapshot, late: &BTreeSet<OccurrenceId>, places: &Places<'_>) -> Vec<Line> {
+/// What keeps a plan from being executed as it says.
+#[derive(Clone, Copy)]
+struct Unsure<'a> {
+    /// The drives for which it may not leave enough time.
+    late: &'a BTreeSet<OccurrenceId>,
+    /// Whether the vehicles of each formation are where it sets out.
+    sets_out: bool,
+}
+
+fn plan_section(snapshot: &Snapshot, unsure: Unsure<'_>, places: &Places<'_>) -> Vec<Line> {
     let Some(network) = &snapshot.network else {
         return vec![places.plain(Status::Failed, "there is no plan, because the text has errors")];
     };
@@ -139,7 +151,7 @@ fn plan_section(snapshot: &Snapshot, late: &BTreeSet<OccurrenceId>, places: &Pla
     } else {
         let mut lines = vec![places.plain(Status::Passed, PLAN)];
         lines.extend(emptiness(planning, network, places));
-        lines.extend(controllability(snapshot, planning, network, late, places));
+        lines.extend(controllability(snapshot, planning, network, unsure, places));
         lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
         lines.extend(assumptions(snapshot, places));
@@ -165,7 +177,7 @@ fn controllability(
     snapshot: &Snapshot,
     planning: &Planning,
     network: &Network,
-    late: &BTreeSet<OccurrenceId>,
+    Unsure { late, sets_out }: Unsure<'_>,
     places: &Places<'_>,
 ) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
@@ -229,7 +241,11 @@ fn controllability(
     if has_meetings {
         text.push_str("; vehicles that come too close may delay each other beyond that");
     }
-    let is_sure = !is_late && !may_be_closed && !has_meetings;
+    let is_scattered = is_checked && !sets_out;
+    if is_scattered {
+        text.push_str("; not every formation can set out as planned");
+    }
+    let is_sure = !is_late && !may_be_closed && !has_meetings && !is_scattered;
     let status = if is_sure { status } else { status.max(Status::Attention) };
     Some(places.line(status, text, None, names, nodes))
 }

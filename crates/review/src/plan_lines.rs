@@ -30,9 +30,12 @@ const IN_THE_WAY: &str = "may be in its way";
 /// What lines say of drives that may have to take another path, which may be longer than plans count.
 pub(super) const CLOSED: &str = "rocks that the map does not show could close its path";
 
-/// Whether the line of a drive says that the plan may be late because of it.
-pub(super) fn may_be_late(line: &Line) -> bool {
-    [LATE, IN_THE_WAY, CLOSED].iter().any(|reason| line.text.contains(reason))
+/// A vehicle that is not where the leader of its formation is when both are to set out.
+struct Scattered<'a> {
+    leader: &'a str,
+    from: String,
+    other: &'a str,
+    there: String,
 }
 
 /// What the lines about a plan are made from.
@@ -382,10 +385,12 @@ impl<'input> PlanLines<'input> {
             needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
         let is_late = self.late.contains(&traverse.occurrence);
         let others = self.in_the_way(traverse);
+        let astray = self.scattered_formation(traverse);
+        let may_be_late = is_late || !others.is_empty() || traverse.may_be_closed() || astray.is_some();
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
-            _ if is_late || !others.is_empty() || traverse.may_be_closed() => Status::Attention,
+            _ if may_be_late => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -422,6 +427,9 @@ impl<'input> PlanLines<'input> {
         if let Some(place_m) = traverse.narrow_m {
             driving.push_str(&format!(" near ({}, {})", place_m.x.round(), place_m.y.round()));
         }
+        if let Some(Scattered { other, there, .. }) = astray {
+            driving.push_str(&format!("; {other} is at {there} when it sets out"));
+        }
         let text = format!(
             "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",
             traverse.length_m,
@@ -441,6 +449,7 @@ impl<'input> PlanLines<'input> {
             clearance_m,
             slope_max_rad: traverse.slope_max_rad,
             slope_limit_rad,
+            may_be_late,
         }
     }
 
@@ -473,23 +482,27 @@ impl<'input> PlanLines<'input> {
 
     /// Traverses whose vehicles are to set out in formation, but are at different locations: no run can start them as planned.
     pub(super) fn scattered_formations(&self) -> Vec<Line> {
-        self.snapshot.traverses.iter().filter_map(|traverse| self.scattered_formation(traverse)).collect()
+        let line = |traverse: &snapshot::Traverse| {
+            let Scattered { leader, from, other, there } = self.scattered_formation(traverse)?;
+            let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+            let name = occurrence.name.as_str();
+            let text = format!(
+                "{name} sets out in formation behind {leader} from {from}, but {other} is at {there}; drive it to {from} first"
+            );
+            let names = [name, leader, other].map(str::to_owned).into();
+            Some(self.places.line(Status::Failed, text, occurrence.span, names, vec![occurrence.start]))
+        };
+        self.snapshot.traverses.iter().filter_map(line).collect()
     }
 
-    fn scattered_formation(&self, traverse: &snapshot::Traverse) -> Option<Line> {
+    fn scattered_formation(&self, traverse: &snapshot::Traverse) -> Option<Scattered<'input>> {
         let vehicles = &self.snapshot.program.world.vehicles;
         let members = traverse.vehicles.iter().filter_map(|&vehicle| vehicles.get(vehicle as usize));
         let mut places =
             members.map(|it| (it.name.text.as_str(), self.place_before(traverse.occurrence, it)));
         let (leader, from) = places.next()?;
         let (other, there) = places.find(|(_, place)| *place != from)?;
-        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
-        let name = occurrence.name.as_str();
-        let text = format!(
-            "{name} sets out in formation behind {leader} from {from}, but {other} is at {there}; drive it to {from} first"
-        );
-        let names = [name, leader, other].map(str::to_owned).into();
-        Some(self.places.line(Status::Failed, text, occurrence.span, names, vec![occurrence.start]))
+        Some(Scattered { leader, from, other, there })
     }
 
     /// The location where a vehicle is before a traverse that moves it.

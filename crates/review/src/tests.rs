@@ -476,8 +476,32 @@ fn a_formation_sets_out_from_one_location() {
     };
     let expected =
         "Convoy#1 sets out in formation behind R1 from A, but R2 is at B; drive it to A first".to_owned();
-    assert_eq!(texts_of(&mission("")), [(Status::Failed, expected)]);
+    let scattered = mission("");
+    assert_eq!(texts_of(&scattered), [(Status::Failed, expected)]);
+    let drives = scattered.traverses.iter().map(|it| (it.line.status, it.may_be_late)).collect::<Vec<_>>();
+    assert_eq!(drives, [(Status::Attention, true)]);
+    let drive = &scattered.traverses[0].line.text;
+    assert!(drive.ends_with("; R2 is at B when it sets out"), "{drive}");
     assert_eq!(texts_of(&mission("Drive(R2, A); delay;")), []);
+}
+
+#[test]
+fn what_comes_after_a_formation_that_cannot_set_out_is_not_controllable() {
+    let mission = |start: &str| {
+        line(
+            &format!(
+                "location A (0, 0); location B (30, 0); vehicle R1 : ATRV at A; vehicle R2 : ATRV at {start};
+                 primitive Convoy(to)[1,90] moves R1, R2; primitive Wait() contingent [1,2];
+                 scenario S[0,200] = {{ Wait(); delay; Convoy(B) }}"
+            ),
+            "dynamically controllable",
+        )
+        .expect("something is contingent")
+    };
+    assert_eq!(mission("A").0, Status::Passed);
+    let (status, text) = mission("B");
+    assert_eq!(status, Status::Attention);
+    assert!(text.ends_with("; not every formation can set out as planned"), "{text}");
 }
 
 #[test]

@@ -19,7 +19,7 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
-use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle};
+use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle, sets_out_within_m};
 
 /// Frames are kept this far apart, in meters and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -183,6 +183,8 @@ pub(super) struct Trip<'a> {
     closed_m: Vec<Vec<Point2<f64>>>,
     /// How each follower was led around something last.
     led_around: Vec<Option<LedAround>>,
+    /// Why it cannot set out.
+    scattered: Option<String>,
 }
 
 impl<'a> Trip<'a> {
@@ -201,19 +203,24 @@ impl<'a> Trip<'a> {
         let declared = |vehicle: u32| world.vehicles.get(vehicle as usize);
         let model = |vehicle: &u32| vehicle::model_of(world, *vehicle as usize).unwrap_or(course.route.model);
         let models: Vec<VehicleModel> = drive.vehicles.iter().map(model).collect();
+        let mut scattered = None;
         let speeds_mps = [course.route.speed_mps.0, course.route.speed_mps.1].map(Rational::to_f64);
         let members: Vec<ConvoyMember> = drive
             .vehicles
             .iter()
             .zip(tracks)
             .zip(&models)
-            .map(|((vehicle, track), model)| {
+            .enumerate()
+            .map(|(index, ((vehicle, track), model))| {
                 let mut points = track.points_m;
-                let stand = before
-                    .stand
-                    .get(vehicle)
-                    .filter(|(place, _)| points.first().is_some_and(|&first| distance(place, &first) < 20.0));
-                if let (Some(&(place, _)), Some(first)) = (stand, points.first_mut()) {
+                let stand = before.stand.get(vehicle);
+                let place = driving.standing_m(&before.stand).find(|(other, _)| other == vehicle);
+                if let (Some((_, place)), Some(first)) = (place, points.first_mut()) {
+                    let away_m = distance(&place, first);
+                    if away_m > sets_out_within_m(drive, index) {
+                        let name = declared(*vehicle).map_or("?", |it| it.name.text.as_str());
+                        scattered = Some(format!("{name} is {away_m:.0} m from where it is to set out"));
+                    }
                     *first = place;
                 }
                 let ahead = points.get(1).zip(points.first()).map_or(Vector2::x(), |(to, from)| to - from);
@@ -337,6 +344,7 @@ impl<'a> Trip<'a> {
             blocked_m: vec![None; count],
             closed_m: vec![Vec::new(); count],
             led_around: vec![None; count],
+            scattered,
         }
     }
 
@@ -350,6 +358,9 @@ impl<'a> Trip<'a> {
         let most_s = MAX_TIMES * self.wanted_s + 600.0 * self.convoy.step_s();
         self.avoid_what_is_known();
         self.record_all(&[]);
+        if let Some(reason) = self.scattered.take() {
+            return Err(reason);
+        }
         let mut steps_left = MAX_STEPS;
         while !self.convoy.has_arrived() {
             let time_s = self.convoy.time_s();

@@ -1,6 +1,7 @@
 //! Vehicles that share a place (SPEC 10.3): each has a place of its own there, at the start and wherever they meet.
 
 use crate::support::Mission;
+use executive::Happening;
 use kirk::Options;
 use mission::planning::Planned;
 use nalgebra::{Point2, distance};
@@ -88,6 +89,21 @@ fn vehicles_that_parameters_name_set_out_in_formation() {
     let mission = Mission::read(source);
     let execution = mission.executed(0, &[]);
     assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
+}
+
+/// Nothing moves a vehicle to where its formation sets out but a drive.
+#[test]
+fn a_formation_whose_vehicles_are_apart_does_not_set_out() {
+    let source = "location A (0, 0); location B (40, 10); vehicle L : ATRV at A; vehicle F : ATRV at B;
+         primitive Convoy(to)[1,90] moves L, F; primitive Drive(r : vehicle, to)[1,90] moves r;
+         scenario S[0,400] = { FIRST Convoy(B) }";
+    let executed = |first: &str| Mission::read(&source.replace("FIRST", first)).executed(0, &[]);
+    let apart = executed("");
+    let gives_up = |happening: &Happening| matches!(happening, Happening::Progress { text, .. } if text.starts_with("F is 4") && text.ends_with(" m from where it is to set out, and gives up"));
+    assert!(apart.log.iter().any(|it| gives_up(&it.happening)), "{:?}", apart.log);
+    let follower = &apart.drives[0].vehicles[1];
+    assert!(follower.frames.iter().all(|it| it.position_m == Point2::new(40.0, 10.0)), "{follower:?}");
+    assert_eq!(executed("Drive(F, A); delay;").ending, executive::Ending::Finished);
 }
 
 /// Vehicles of a formation that the plan does not move are obstacles for others.

@@ -25,7 +25,7 @@ use self::promise::Promise;
 use self::runs::Runs;
 use self::schedules::{Made, Schedules};
 use super::record::LineKey;
-use super::{Review, Section, Status, plan_lines};
+use super::{Review, Section, Status};
 
 /// A line that has passed, how it was tried, and the counterexample if one was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -185,7 +185,7 @@ impl Trial {
             num_schedules: 0,
             num_runs: 0,
             has_plans: false,
-            may_be_late: review.traverses.iter().any(|it| plan_lines::may_be_late(&it.line)),
+            may_be_late: review.traverses.iter().any(|it| it.may_be_late),
         })
     }
 
