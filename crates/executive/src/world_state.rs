@@ -171,11 +171,7 @@ impl WorldState {
             held.value = value_of(&label.literal.values);
             held.seen.extend(held.value);
         }
-        let level = |supply: &Supply| match *supply {
-            Supply::Reservoir { level, .. } => level,
-            Supply::Reusable { .. } => Rational::ZERO,
-        };
-        let levels = network.resources.iter().map(|resource| level(&resource.supply)).collect();
+        let levels = network.resources.iter().map(|resource| resource.supply.initial_level()).collect();
         Self {
             under_way: vec![BTreeSet::new(); held.len()],
             touched: (0..held.len()).map(VariableId::from_index).collect(),

@@ -324,6 +324,16 @@ pub enum Supply {
     },
 }
 
+impl Supply {
+    /// The level of a reservoir at the start; of another resource what is in use then, which is nothing.
+    pub const fn initial_level(self) -> Rational {
+        match self {
+            Self::Reusable { .. } => Rational::ZERO,
+            Self::Reservoir { level, .. } => level,
+        }
+    }
+}
+
 /// What an activity or a block takes of a resource, or gives to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Use {

@@ -125,18 +125,10 @@ impl Profile {
         }
     }
 
-    /// What is used or left before anything happens.
-    pub const fn initial(&self) -> Rational {
-        match self.supply {
-            Supply::Reusable { .. } => Rational::ZERO,
-            Supply::Reservoir { level, .. } => level,
-        }
-    }
-
     /// What is used or left at a time of the earliest schedule.
     pub fn level_at(&self, time: f64) -> Rational {
         let after = self.steps.partition_point(|step| step.time <= time);
-        after.checked_sub(1).map_or_else(|| self.initial(), |at| self.steps[at].level)
+        after.checked_sub(1).map_or_else(|| self.supply.initial_level(), |at| self.steps[at].level)
     }
 
     /// Who takes of it or gives to it while this time of the earliest schedule passes.
@@ -153,7 +145,7 @@ impl Profile {
         let of_plan = match self.levels {
             Some(Levels::Peak(peak)) => [peak, peak],
             Some(Levels::Range { low, high }) => [low, high],
-            None => [self.initial(), self.initial()],
+            None => [self.supply.initial_level(), self.supply.initial_level()],
         };
         let asked = self.conditions().map(|(_, condition)| condition.bound);
         let levels = self.steps.iter().map(|step| step.level).chain(of_plan).chain(asked);
@@ -222,7 +214,7 @@ impl Profile {
         }
         changes.sort_by(|left, right| left.0.total_cmp(&right.0).then(left.1.cmp(&right.1)));
         let mut steps: Vec<Step> = Vec::new();
-        let mut level = self.initial();
+        let mut level = self.supply.initial_level();
         for (time, _, change) in changes {
             let Some(changed) = level.checked_add(change) else { break };
             level = changed;

@@ -1,10 +1,11 @@
-//! What one schedule of a plan says of a flight rule at one instant (SPEC 16.1). Nothing of how rules are evaluated over all
-//! schedules is used.
+//! What one schedule of a plan, or one run of it, says of a flight rule at one instant (SPEC 16.1). Nothing of how rules are
+//! evaluated over all schedules is used.
 
 use exact::{Rational, Time};
+use executive::{Entry, Happening};
 use rmpl::program::{Change, LabelMode, Program};
 use rmpl::rule::{Activity, Formula, Moment, Rule};
-use tpn::{Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, Supply, ValueId, ValueSet};
+use tpn::{Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, ValueId, ValueSet};
 
 /// One schedule of a plan.
 #[derive(Clone, Copy)]
@@ -15,6 +16,8 @@ pub(crate) struct Scheduled<'a> {
     pub(crate) times: &'a [Option<Time>],
     /// Whether an activity takes the least or greatest time that it is declared with, for a purpose.
     pub(crate) is_extreme: bool,
+    /// The log of the run whose times these are: levels are what they came to in it.
+    pub(crate) log: Option<&'a [Entry]>,
 }
 
 /// One time of it. At a moment, what touches it counts.
@@ -221,12 +224,35 @@ impl Instant<'_> {
 
     /// The level of a reservoir, or what is in use of another resource. What starts at a moment does not count at it.
     fn level(&self, name: &str) -> Option<Rational> {
+        self.of.log.map_or_else(|| self.planned_level(name), |log| self.level_in_run(name, log))
+    }
+
+    fn level_in_run(&self, name: &str, log: &[Entry]) -> Option<Rational> {
+        let resource = self.of.network.resources.iter().find(|it| it.name == name)?;
+        let has_started = |by: &str| {
+            let owner = self.of.network.occurrences.iter().find(|it| it.name == by);
+            owner.and_then(|it| self.of.time(it.start)).is_some_and(|start| start < self.at)
+        };
+        let mut shown = resource.supply.initial_level();
+        let mut level = shown;
+        for entry in log.iter().take_while(|entry| entry.time <= self.at) {
+            let Happening::Level { resource: of, level: then, by } = &entry.happening else { continue };
+            if *of != resource.name {
+                continue;
+            }
+            let change = then.checked_sub(shown)?;
+            shown = *then;
+            if !self.touches || entry.time < self.at || by.as_ref().is_none_or(|by| has_started(by)) {
+                level = level.checked_add(change)?;
+            }
+        }
+        Some(level)
+    }
+
+    fn planned_level(&self, name: &str) -> Option<Rational> {
         let network = self.of.network;
         let index = network.resources.iter().position(|it| it.name == name)?;
-        let mut level = match network.resources[index].supply {
-            Supply::Reusable { .. } => Rational::ZERO,
-            Supply::Reservoir { level, .. } => level,
-        };
+        let mut level = network.resources[index].supply.initial_level();
         for used in network.uses.iter().filter(|it| {
             it.resource.index() == index && self.of.plan.selected_arcs.get(it.arc.index()) == Some(&true)
         }) {
@@ -234,17 +260,10 @@ impl Instant<'_> {
             let has_started = start < self.at || (start == self.at && !self.touches);
             let has_ended = end <= self.at;
             match used.change {
-                Change::Uses => {
-                    if has_started {
-                        level = level.checked_add(used.amount)?;
-                    }
-                    if has_ended {
-                        level = level.checked_sub(used.amount)?;
-                    }
-                }
+                Change::Uses if has_started && !has_ended => level = level.checked_add(used.amount)?,
                 Change::Consumes if has_started => level = level.checked_sub(used.counted())?,
                 Change::Produces if has_ended => level = level.checked_add(used.counted())?,
-                Change::Consumes | Change::Produces => {}
+                Change::Uses | Change::Consumes | Change::Produces => {}
             }
         }
         Some(level)

@@ -232,6 +232,7 @@ impl Trial {
             plan: &self.plan,
             times: &times,
             is_extreme,
+            log: None,
         };
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
@@ -296,12 +297,26 @@ impl Trial {
             }
             _ => Observed { ..*run },
         };
+        let is_open_rule = |(promise, it): &(Promise, Tried)| {
+            matches!(promise, Promise::Rule(_)) && it.counterexample.is_none()
+        };
+        let times = (self.lines.iter().any(is_open_rule))
+            .then(|| executed_times(&self.network, &self.plan, run))
+            .flatten();
+        let executed = times.as_ref().map(|times| Scheduled {
+            program: &self.program,
+            network: &self.network,
+            plan: &self.plan,
+            times,
+            is_extreme: false,
+            log: Some(run.log),
+        });
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
                 continue;
             }
             let run = if promise.is_of_whole_runs() { run } else { &kept };
-            let Some(found) = promise.broken_by_run(run) else { continue };
+            let Some(found) = promise.broken_by_run(run, executed) else { continue };
             tried.runs += 1;
             tried.counterexample = found.map(|text| Counterexample { text, script: script.clone() });
         }
@@ -311,6 +326,25 @@ impl Trial {
     pub fn tried(&self) -> impl Iterator<Item = &Tried> {
         self.lines.iter().map(|(_, tried)| tried)
     }
+}
+
+/// When the nodes of a plan were executed in a run that kept the plan to its end; `None` if one with events was not.
+fn executed_times(network: &Network, plan: &Plan, run: &Observed<'_>) -> Option<Vec<Option<Time>>> {
+    let is_other = |it: &Happening| matches!(it, Happening::Violation { .. } | Happening::Replanned { .. });
+    if run.ending != Ending::Finished || run.log.iter().any(|entry| is_other(&entry.happening)) {
+        return None;
+    }
+    let executed = run.log.iter().filter_map(|entry| match &entry.happening {
+        Happening::Executed { name } => Some((name.as_str(), entry.time)),
+        _ => None,
+    });
+    let executed: BTreeMap<&str, Time> = executed.collect();
+    let time = |node: &tpn::Node| {
+        let mut events = node.events.iter().filter(|&&event| plan.has_event(network, event)).peekable();
+        events.peek()?;
+        Some(events.find_map(|&event| executed.get(network.event_name(event).as_str()).copied()))
+    };
+    network.nodes.iter().map(|node| time(node).map_or(Some(None), |it| it.map(Some))).collect()
 }
 
 /// The times of the events that have names, and of nodes without events.

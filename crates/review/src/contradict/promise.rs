@@ -232,7 +232,7 @@ impl Promise {
 
     /// Whether a run says something of it.
     pub(super) const fn is_of_runs(&self) -> bool {
-        !matches!(self, Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Optimal | Self::Nothing)
+        !matches!(self, Self::Valid | Self::DeclaredDurations | Self::Optimal | Self::Nothing)
     }
 
     /// Whether another plan says something of it.
@@ -255,10 +255,7 @@ impl Promise {
                 let broken = of.levels(resource).into_iter().find(|(_, level)| level < low || level > high);
                 Some(broken.map(|(at, level)| format!("at {} it is {}", at.readable(), level.readable())))
             }
-            Self::Rule(rule) => {
-                let breach = of.first_breach(rule);
-                Some(breach.map(|at| format!("it is not known to hold at {}", at.readable())))
-            }
+            Self::Rule(rule) => Some(breach(rule, of)),
             Self::DeclaredDurations => of.is_extreme.then_some(None),
             // One value is in every order.
             Self::InOrder { nodes, .. } if nodes.len() < 2 => None,
@@ -294,9 +291,14 @@ impl Promise {
         matches!(self, Self::Runs | Self::NoContact)
     }
 
-    /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it.
+    /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it. `executed` is the
+    /// plan at the times of the run, if the run kept it.
     #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
-    pub(super) fn broken_by_run(&self, run: &Observed<'_>) -> Option<Option<String>> {
+    pub(super) fn broken_by_run(
+        &self,
+        run: &Observed<'_>,
+        executed: Option<Scheduled<'_>>,
+    ) -> Option<Option<String>> {
         let Observed { log, ending, sight } = *run;
         let came = |event: &str| {
             let is_it =
@@ -389,9 +391,15 @@ impl Promise {
                     format!("at {} {vehicle} {verb} {location} from ({east:.2}, {north:.2})", at.readable())
                 }))
             }
-            Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Optimal | Self::Nothing => None,
+            Self::Rule(rule) => executed.map(|of| breach(rule, of)),
+            Self::Valid | Self::DeclaredDurations | Self::Optimal | Self::Nothing => None,
         }
     }
+}
+
+/// That a rule is not known to hold at some time.
+fn breach(rule: &Rule, of: Scheduled<'_>) -> Option<String> {
+    of.first_breach(rule).map(|at| format!("it is not known to hold at {}", at.readable()))
 }
 
 /// That one time is not so much later than another.

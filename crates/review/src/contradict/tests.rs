@@ -142,7 +142,7 @@ scenario S[0,230] = { Drive(V0, P3), Charge() }";
 
 #[test]
 fn a_drive_that_consumes_less_than_the_most_leaves_no_more_than_planned() {
-    let (all, _, evaluated) = run(CHARGED, |_| {});
+    let (all, mut core, evaluated) = run(CHARGED, |_| {});
     let line = all.iter().find(|it| it.line.section == Section::Resources).expect("it has passed");
     assert!(
         line.line.text.ends_with("; for every distance that drives may take along their paths"),
@@ -172,6 +172,19 @@ fn a_drive_that_consumes_less_than_the_most_leaves_no_more_than_planned() {
     reviewed.hold_against(&snapshot, &FlightRules { rules, ..FlightRules::default() }, None, &mut || false);
     let outcomes: Vec<&Outcome> = reviewed.findings.iter().map(|it| &it.outcome).collect();
     assert!(!matches!(outcomes[0], Outcome::Holds) && matches!(outcomes[1], Outcome::Holds), "{outcomes:?}");
+    // Runs tell the same, by what the drive consumes in them.
+    reviewed.findings[0].outcome = Outcome::Holds;
+    let rules = reviewed.rules.clone();
+    reviewed.judge(&rules, None);
+    let mut trial =
+        Trial::new(&snapshot, &reviewed, None, Effort { schedules: 0, runs: 8, seed: 1 }).expect("a plan");
+    while let Some(script) = trial.next_run() {
+        let (log, ending) = replayed(&mut core, &evaluated, &script);
+        trial.try_run(&script, &observed(&log, ending));
+    }
+    let of_rules = trial.tried().filter(|it| it.line.section == Section::MissionRules);
+    let verdicts: Vec<_> = of_rules.map(|it| (it.verdict(), it.runs > 0)).collect();
+    assert_eq!(verdicts, [(Verdict::Contradicted, true), (Verdict::Survived, true)]);
 }
 
 /// A battery that a drive makes room in for a charge: enough, if it drives as far as it does at most.

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use exact::Rational;
 use rmpl::program::Change as Changes;
 use rmpl::rule::Order;
-use tpn::{Network, Supply, Use};
+use tpn::Use;
 
 use super::cases::Case;
 use super::cut::{Edge, Times};
@@ -122,14 +122,6 @@ impl Change {
 }
 
 impl Resource {
-    /// How much there is before anything has come.
-    pub(super) fn first_of(network: &Network, resource: usize) -> Rational {
-        match network.resources[resource].supply {
-            Supply::Reusable { .. } => Rational::ZERO,
-            Supply::Reservoir { level, .. } => level,
-        }
-    }
-
     /// The level of `case` that is the furthest where `wanted` looks, and which changes have come then; `None` where figures
     /// are too large.
     pub(super) fn furthest(

@@ -161,7 +161,7 @@ fn resource(network: &Network, plan: &Plan, index: usize) -> Resource {
         used.resource.index() == index && plan.selected_arcs.get(used.arc.index()) == Some(&true)
     });
     Resource {
-        first: Resource::first_of(network, index),
+        first: network.resources[index].supply.initial_level(),
         changes: selected.flat_map(Change::of_use).collect(),
     }
 }

@@ -102,7 +102,8 @@ impl Judge<'_> {
         // That the checker cannot decide the order within an instant is nothing against a schedule, and vertices of a path
         // are no deadlines (SPEC 6.2).
         let is_allowed = |rule: Checked| rule == Checked::Form || (has_path && rule == Checked::Duration);
-        let scheduled = Scheduled { program: self.program, network, plan, times, is_extreme: false };
+        let scheduled =
+            Scheduled { program: self.program, network, plan, times, is_extreme: false, log: None };
         verify::check_plan(network, plan).valid
             && verify::check_schedule(network, plan, times).violations.iter().all(|it| is_allowed(it.rule))
             && scheduled.first_breach(self.rule).is_some()

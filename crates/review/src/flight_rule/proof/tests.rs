@@ -227,8 +227,14 @@ fn what_is_proven_no_schedule_breaks() {
             {
                 let times: Vec<Option<Time>> =
                     times.iter().map(|&at| (at >= 0).then(|| Time::from(at))).collect();
-                let scheduled =
-                    Scheduled { program: &snapshot.program, network, plan, times: &times, is_extreme: false };
+                let scheduled = Scheduled {
+                    program: &snapshot.program,
+                    network,
+                    plan,
+                    times: &times,
+                    is_extreme: false,
+                    log: None,
+                };
                 let breach = scheduled.first_breach(&rule);
                 if breach.is_some() {
                     let checked = verify::check_schedule(network, plan, &times);

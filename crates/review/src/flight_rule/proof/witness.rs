@@ -14,7 +14,7 @@ use tpn::{
 };
 
 use super::super::cut::{Edge, PARTS};
-use super::super::level::{Change, Resource, Wanted};
+use super::super::level::{Change, Wanted};
 use super::question::Requirement;
 
 /// The network of a mission with such an instant; `None` if figures are too large, or the network has no structure.
@@ -173,7 +173,7 @@ impl Witness<'_> {
         let uses = self.of.uses.iter().filter(|used| used.resource.index() == wanted.resource);
         let changes: Vec<(ArcId, Change)> =
             uses.flat_map(|used| Change::of_use(used).into_iter().map(|change| (used.arc, change))).collect();
-        let first = Resource::first_of(self.of, wanted.resource);
+        let first = self.of.resources[wanted.resource].supply.initial_level();
         let sizes = changes.iter().map(|(_, change)| change.size(wanted.is_above));
         let furthest = sizes.collect::<Option<Vec<_>>>()?.into_iter().try_fold(
             // What is compared with counts, too, so that it is within what the reservoir holds.
