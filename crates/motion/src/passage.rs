@@ -4,7 +4,7 @@
 //! rock can close the only way there is.
 
 use nalgebra::{Point2, Vector2, distance};
-use terrain::{Cell, CellState, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Rock};
+use terrain::{CellState, ConfigurationSpace, Obstacle, Rock};
 
 use crate::path::{Path, length_m};
 use crate::way_around::way_around;
@@ -22,8 +22,9 @@ const LEAVING_WITHIN_M: f64 = 7.0;
 const STEP_M: f64 = 1.0;
 
 /// The first place of a path where a rock that the map does not show, as big as such a rock can be, would leave no way on that
-/// is at most `AROUND_M` longer; `None` if there is always one. `space` is where the vehicle can be by the map. Places near
-/// the ends of the path do not count: a vehicle stops beside a rock there.
+/// is at most `AROUND_M` longer, or its end, if the map leaves less room than half such a rock there, so that a few rocks could
+/// enclose it; `None` if there is always a way. `space` is where the vehicle can be by the map. Places near the ends of
+/// the path do not count otherwise: a vehicle stops beside a rock there.
 ///
 /// Takes time in proportion to the length of the path, most of it where the map leaves less room than a rock needs.
 pub fn narrow_passage(space: &ConfigurationSpace, path: &Path) -> Option<Point2<f64>> {
@@ -55,7 +56,9 @@ pub fn narrow_passage(space: &ConfigurationSpace, path: &Path) -> Option<Point2<
         // Clearance changes by no more than the way moved.
         along_m += (room_m - away_m).max(STEP_M);
     }
-    None
+    // Next to steep ground or an obstacle a few rocks enclose a goal.
+    let is_tight = |goal: &Point2<f64>| space.clearance_m(*goal).is_some_and(|room_m| room_m < rock_m);
+    path.points_m.last().copied().filter(|goal| path.length_m() > 0.0 && is_tight(goal))
 }
 
 /// The places on a path some meters before and after another one.
@@ -86,32 +89,16 @@ fn leads_around(
     rock_m: f64,
 ) -> bool {
     let longest_m = distance(&ends_m[0], &rock) + distance(&rock, &ends_m[1]) + AROUND_M;
-    let mut around = map_around(space, rock, longest_m);
+    let mut around = space.occupancy().around(rock, longest_m, 1);
     around.mark(&Obstacle::Circle { center_m: rock, radius_m: rock_m }, CellState::Rock);
     let around = ConfigurationSpace::new(around, space.radius_m());
     way_around(&around, ends_m, longest_m, u32::MAX).is_some_and(|way| length_m(&way) <= longest_m)
 }
 
-/// A part of a map, so many meters across.
-fn map_around(space: &ConfigurationSpace, center_m: Point2<f64>, across_m: f64) -> Occupancy {
-    let map = space.frame();
-    let corner = |sign: f64| map.to_cells(center_m + Vector2::repeat(sign * 0.5 * across_m));
-    let low = corner(-1.0).map(|cells| cells.floor().max(0.0) as u32);
-    let high = corner(1.0).map(|cells| cells.ceil().max(0.0) as u32);
-    let (width, height) = (high.x.min(map.width) - low.x, high.y.min(map.height) - low.y);
-    let origin_m = map.to_meters(Point2::new(f64::from(low.x), f64::from(low.y)));
-    let frame = GridFrame { width, height, origin_m, ..*map };
-    let of_map = |index: usize| {
-        let cell = frame.cell(index);
-        let of_map = Cell { column: low.x + cell.column, row: low.y + cell.row };
-        space.occupancy().state(of_map) != CellState::Free
-    };
-    let occupied: Vec<bool> = (0..frame.cell_count()).map(of_map).collect();
-    Occupancy::from_obstacles(frame, &occupied)
-}
-
 #[cfg(test)]
 mod tests {
+    use terrain::{GridFrame, Occupancy};
+
     use super::*;
 
     /// Whether one rock could close a straight path of 60 m through a gap of some meters between two walls, each so many meters
@@ -147,8 +134,13 @@ mod tests {
         let corners = [[0.0, 0.0], [60.0, 0.0], [60.0, 1.2], [0.0, 1.2]];
         map.mark(&Obstacle::Polygon { corners_m: corners.map(Point2::from).to_vec() }, CellState::Steep);
         let space = ConfigurationSpace::new(map, 0.7);
-        let along = |y: f64| Path::new(vec![Point2::new(2.0, y), Point2::new(58.0, y)]);
+        let along = |y: f64| Path::new([[2.0, y], [52.0, y], [58.0, 4.0]].map(Point2::from).to_vec());
         assert_eq!(narrow_passage(&space, &along(2.6)), None);
+        // A goal next to the wall may be enclosed, but not where the vehicle already is.
+        let goal = Point2::new(52.0, 2.6);
+        let there = Path::new(vec![Point2::new(52.0, 6.0), goal]);
+        assert_eq!(narrow_passage(&space, &there), Some(goal));
+        assert_eq!(narrow_passage(&space, &Path::new(vec![goal, goal])), None);
         assert_eq!(narrow_passage(&space, &Path::new(vec![Point2::new(2.0, 3.0)])), None);
         assert_eq!(narrow_passage(&space, &Path::new(Vec::new())), None);
     }

@@ -1,5 +1,6 @@
 //! Which cells of a map a kind of vehicle can't be over, and for which reason.
 
+use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::{Cell, GridFrame};
@@ -111,6 +112,28 @@ impl Occupancy {
     pub fn mark(&mut self, shape: &Obstacle, state: CellState) {
         let Self { frame, states } = self;
         shape.for_each_cell(frame, |cell| states[frame.index(cell)] = state);
+    }
+
+    /// The part of the grid that is `across_m` wide and high around a place, as far as there is one, with each cell divided into
+    /// `parts` × `parts` cells.
+    pub fn around(&self, center_m: Point2<f64>, across_m: f64, parts: u32) -> Self {
+        let corner = |sign: f64| self.frame.to_cells(center_m + Vector2::repeat(sign * 0.5 * across_m));
+        let within = |cells: f64, size: u32| cells.clamp(0.0, f64::from(size)) as u32;
+        let on_grid =
+            |at: Point2<f64>| Point2::new(within(at.x, self.frame.width), within(at.y, self.frame.height));
+        let low = on_grid(corner(-1.0).map(f64::floor));
+        let high = on_grid(corner(1.0).map(f64::ceil));
+        let frame = GridFrame {
+            width: (high.x - low.x) * parts,
+            height: (high.y - low.y) * parts,
+            cell_size_m: self.frame.cell_size_m / f64::from(parts),
+            origin_m: self.frame.to_meters(low.map(f64::from)),
+        };
+        let state = |index: usize| {
+            let Cell { column, row } = frame.cell(index);
+            self.state(Cell { column: low.x + column / parts, row: low.y + row / parts })
+        };
+        Self { frame, states: (0..frame.cell_count()).map(state).collect() }
     }
 
     /// Where the grid lies.

@@ -13,7 +13,7 @@ use anyhow::{Context as _, Result, bail, ensure};
 use serde_json::{Value, json};
 
 use crate::{
-    browser::{Browser, Firefox, Graphics, Key, Modifiers, Profile, Tab},
+    browser::{Browser, Firefox, Graphics, Key, Modifiers, Profile, Tab, WebKit, WebKitOnDisk},
     disturb::{Chance, FOCUS_TEXT, LONGEST_TEXT, SIZE, missing},
     process::kill_group,
     server::SiteServer,
@@ -24,6 +24,8 @@ use crate::{
 pub enum Victim {
     Chromium,
     Firefox,
+    #[value(name = "webkit")]
+    WebKit,
 }
 
 /// When the browser is killed.
@@ -47,6 +49,10 @@ const TOLERATED: Duration = Duration::from_millis(100);
 /// The database has confirmed the latest text: only then is the small copy of it removed.
 const IS_SAVED: &str =
     "!Object.keys(localStorage).some((key) => key.startsWith('enroute/enroute/writing-1/'))";
+
+/// Counts the keys that the page is told of.
+const COUNT_PRESSED: &str = "(() => { window.pressed = 0; \
+    addEventListener('keydown', () => window.pressed++, true); })()";
 
 /// The result of all kills of a browser. Displays as the row of a table in Markdown.
 #[derive(Debug)]
@@ -146,6 +152,7 @@ struct Typed {
 enum Running {
     Chromium { browser: Browser, tab: Tab },
     Firefox(Box<Firefox>),
+    WebKit(Box<WebKitOnDisk>),
 }
 
 impl Running {
@@ -163,6 +170,10 @@ impl Running {
                 firefox.go_to(url)?;
                 Self::Firefox(Box::new(firefox))
             }
+            Victim::WebKit => {
+                let programs = WebKit::find().context("WebKit is not installed")?;
+                Self::WebKit(Box::new(WebKitOnDisk::start_on(profile, &programs, SIZE, url)?))
+            }
         };
         running.wait_until("'enroute' in window")?;
         let outcome = running.ask("enroute.ready.then(() => 'ready', (reason) => String(reason))")?;
@@ -174,6 +185,7 @@ impl Running {
         match self {
             Self::Chromium { tab, .. } => tab.evaluate(expression),
             Self::Firefox(firefox) => firefox.evaluate(expression),
+            Self::WebKit(webkit) => webkit.evaluate(expression),
         }
     }
 
@@ -181,6 +193,7 @@ impl Running {
         match self {
             Self::Chromium { tab, .. } => tab.wait_until(expression).map(|_| ()),
             Self::Firefox(firefox) => firefox.wait_until(expression),
+            Self::WebKit(webkit) => webkit.wait_until(expression),
         }
     }
 
@@ -188,6 +201,11 @@ impl Running {
         match self {
             Self::Chromium { tab, .. } => tab.press(Key::Character(key), Modifiers::NONE),
             Self::Firefox(firefox) => firefox.press(&key.to_string()),
+            // The display takes keys without waiting for anybody.
+            Self::WebKit(webkit) => {
+                webkit.press(key)?;
+                webkit.wait_until("window.pressed > 0 && window.pressed-- > 0")
+            }
         }
     }
 
@@ -195,6 +213,7 @@ impl Running {
         match self {
             Self::Chromium { browser, .. } => browser.leader(),
             Self::Firefox(firefox) => firefox.leader(),
+            Self::WebKit(webkit) => webkit.leader(),
         }
     }
 
@@ -211,6 +230,11 @@ impl Running {
                 let (x, y) = place.context("the text is nowhere")?;
                 firefox.click(x, y)?;
                 firefox.wait_until("document.querySelector('[aria-activedescendant]')")
+            }
+            Self::WebKit(webkit) => {
+                webkit.focus()?;
+                webkit.wait_until(FOCUS_TEXT)?;
+                webkit.evaluate(COUNT_PRESSED).map(|_| ())
             }
         }
     }

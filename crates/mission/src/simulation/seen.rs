@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::way::distance_to;
 use nalgebra::{Point2, distance_squared};
 
 /// Points that were seen, and when, in mission units: at most one in each square.
@@ -46,12 +47,9 @@ pub(super) fn is_blocked(way: &[Point2<f64>], points: &[Point2<f64>], reach: f64
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return false };
     let is_at_end =
         |point: &&Point2<f64>| [first, last].iter().any(|end| distance_squared(end, point) <= reach * reach);
-    let near = |from: &Point2<f64>, to: &Point2<f64>, point: &Point2<f64>| {
-        let ahead = to - from;
-        let length = ahead.norm_squared();
-        let share = if length > 0.0 { ((point - from).dot(&ahead) / length).clamp(0.0, 1.0) } else { 0.0 };
-        distance_squared(&(from + ahead * share), point) < reach * reach
-    };
     let points: Vec<&Point2<f64>> = points.iter().filter(|point| !is_at_end(point)).collect();
-    way.windows(2).any(|pair| points.iter().any(|point| near(&pair[0], &pair[1], point)))
+    way.windows(2).any(|pair| {
+        let is_near = |point: &&Point2<f64>| distance_to([pair[0], pair[1]], **point) < reach;
+        points.iter().any(is_near)
+    })
 }

@@ -18,7 +18,7 @@ use terrain::{CellState, ConfigurationSpace, Obstacle, Occupancy, Terrain};
 use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
-use super::way::{nearest_free, rest_of, until};
+use super::way::{gets_past, nearest_free, rest_of, until};
 use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle, sets_out_within_m};
 
 /// Frames are kept this far apart, in meters and radians, and at least every so many steps.
@@ -68,6 +68,11 @@ const BOUND_M: f64 = 60.0;
 /// The places near the vehicle from which it is searched at most, and meters between them.
 const STARTS: u32 = 4;
 const STARTS_APART_M: f64 = 0.6;
+/// Where no way is found, one is searched on a map whose cells are at most so large in meters, up to so many meters beside
+/// the vehicle and its goal, if it is at most so many meters across.
+const FINER_M: f64 = 0.2;
+const BESIDE_FINER_M: f64 = 15.0;
+const MAX_FINER_M: f64 = 80.0;
 /// How finely the ways of others are put on a map, in meters.
 const LANE_STEP_M: f64 = 0.5;
 /// Meters beyond the path are counted by so many.
@@ -494,8 +499,12 @@ impl<'a> Trip<'a> {
             let ahead = driver.path().point_at(driver.progress_m() + CLOSED_AHEAD_M);
             self.closed_m[vehicle].extend(ahead.map(|(place, _)| place));
         }
-        let mut occupancy = self.course.drive.space.occupancy().clone();
-        mark(&mut occupancy, driver.seen_m(), 0.0);
+        let map = self.course.drive.space.occupancy();
+        let seen_on = |mut map: Occupancy| {
+            mark(&mut map, driver.seen_m(), 0.0);
+            map
+        };
+        let occupancy = seen_on(map.clone());
         let remaining_m = driver.length_m() - driver.progress_m();
         let (path, ends_m) = (driver.path().clone(), &self.leg_ends_m);
         let total_m = ends_m.last().copied().unwrap_or(0.0);
@@ -538,8 +547,19 @@ impl<'a> Trip<'a> {
             let after = rest_of(&path, path.length_m() - rest_m);
             let &goal_m =
                 after.first().filter(|place| rest_m <= 0.0 || vehicle == 0 || !is_taken(**place))?;
-            let way = |spaces: &[_]| way_between(spaces, &rooms_m, [here, goal_m], &model, self.reroutes);
-            Some((way(&shared).or_else(|| way(&own))?, after))
+            let way = |spaces: &[_]| {
+                let gets_past = |to| gets_past(driver.seen_m(), [here, to], model.circumradius_m);
+                way_between(spaces, &rooms_m, [here, goal_m], gets_past, &model, self.reroutes)
+            };
+            // Whole cells may close a way that is wide enough.
+            let finer = || {
+                let parts = (map.frame().cell_size_m / FINER_M).ceil() as u32;
+                let across_m = distance(&here, &goal_m) + 2.0 * BESIDE_FINER_M;
+                let is_wanted = parts > 1 && across_m <= MAX_FINER_M;
+                let map = is_wanted.then(|| map.around(nalgebra::center(&here, &goal_m), across_m, parts))?;
+                way(&[space(seen_on(map))])
+            };
+            Some((way(&shared).or_else(|| way(&own)).or_else(finer)?, after))
         });
         let Some((mut way, after)) = found else { return Err(stuck) };
         let length_m = way.length_m();
@@ -610,9 +630,12 @@ impl<'a> Trip<'a> {
             let end_m = if leg + 1 == legs { length_m } else { end_m };
             let before = Path::new(until(&path, end_m));
             let mut piece = rest_of(&before, from_m);
+            let past_known = |to| {
+                piece.first().is_none_or(|&from| gets_past(self.known.iter().copied(), [from, to], reach))
+            };
             if let (true, Some(&start_m), Some(&goal_m)) =
                 (is_blocked(&piece, &self.known, reach), piece.first(), piece.last())
-                && let Some(way) = way_between(&spaces, &[0.0, 0.1], [start_m, goal_m], model, 0)
+                && let Some(way) = way_between(&spaces, &[0.0, 0.1], [start_m, goal_m], past_known, model, 0)
             {
                 piece = way.points_m;
                 is_new = true;
@@ -740,11 +763,13 @@ fn mark(map: &mut Occupancy, centers_m: impl IntoIterator<Item = Point2<f64>>, r
 }
 
 /// A way from a place to another one on the first of some maps that has one, with the first of some rooms around the vehicle that
-/// leaves one; on a later map or with less room where that saves a long way around.
+/// leaves one; on a later map or with less room where that saves a long way around. It starts at the nearest free place that
+/// is reached straight.
 fn way_between<Space: Deref<Target = ConfigurationSpace>>(
     spaces: &[Space],
     rooms_m: &[f64],
     [here, goal_m]: [Point2<f64>; 2],
+    is_reached: impl Fn(Point2<f64>) -> bool,
     model: &VehicleModel,
     seed: u32,
 ) -> Option<Path> {
@@ -755,7 +780,7 @@ fn way_between<Space: Deref<Target = ConfigurationSpace>>(
             break;
         }
         let space = space.with_radius_m(model.circumradius_m + room_m);
-        if let Some(way) = way_within(&space, here, goal_m, seed)
+        if let Some(way) = way_within(&space, [here, goal_m], &is_reached, seed)
             && best.as_ref().is_none_or(|best| way.length_m() + SAVED_M < best.length_m())
         {
             best = Some(way);
@@ -764,8 +789,14 @@ fn way_between<Space: Deref<Target = ConfigurationSpace>>(
     best
 }
 
-/// A way in the free places of a vehicle, which starts at the nearest one that leads on and ends at the one nearest to the goal.
-fn way_within(space: &ConfigurationSpace, here: Point2<f64>, goal_m: Point2<f64>, seed: u32) -> Option<Path> {
+/// A way in the free places of a vehicle, which starts at the nearest one that is reached and leads on, and ends at the one
+/// nearest to the goal.
+fn way_within(
+    space: &ConfigurationSpace,
+    [here, goal_m]: [Point2<f64>; 2],
+    is_reached: impl Fn(Point2<f64>) -> bool,
+    seed: u32,
+) -> Option<Path> {
     let settings = motion::Settings {
         seed: u64::from(seed),
         max_samples: MAX_SAMPLES,
@@ -777,7 +808,9 @@ fn way_within(space: &ConfigurationSpace, here: Point2<f64>, goal_m: Point2<f64>
     let (start_m, mut way) = (0..STARTS).find_map(|_| {
         // Cells that are taken for what was seen may leave free places that lead nowhere.
         let is_new = |place| tried_m.iter().all(|tried| distance(tried, &place) >= STARTS_APART_M);
-        let leads_on = |place| is_new(place) && space.is_free(place) && !space.are_separated(place, end_m);
+        let leads_on = |place| {
+            is_new(place) && space.is_free(place) && !space.are_separated(place, end_m) && is_reached(place)
+        };
         let start_m = nearest_free(leads_on, here)?;
         tried_m.push(start_m);
         let query = Query { start_m, goal_m: end_m };

@@ -1,7 +1,10 @@
 //! Parts of ways that vehicles take when theirs is blocked.
 
 use motion::Path;
-use nalgebra::{Point2, UnitComplex, Vector2};
+use nalgebra::{Point2, UnitComplex, Vector2, distance};
+
+/// A stretch leads nearer to something if it is so much nearer, in meters.
+const NEARER_M: f64 = 0.05;
 
 /// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
 pub(crate) fn nearest_free(is_free: impl Fn(Point2<f64>) -> bool, here: Point2<f64>) -> Option<Point2<f64>> {
@@ -18,6 +21,23 @@ pub(crate) fn nearest_free(is_free: impl Fn(Point2<f64>) -> bool, here: Point2<f
             is_free(place).then_some(place)
         },
     )
+}
+
+/// How far a place is from a straight stretch, in meters.
+pub(super) fn distance_to([from, to]: [Point2<f64>; 2], place: Point2<f64>) -> f64 {
+    let ahead = to - from;
+    let length = ahead.norm_squared();
+    let share = if length > 0.0 { ((place - from).dot(&ahead) / length).clamp(0.0, 1.0) } else { 0.0 };
+    distance(&(from + ahead * share), &place)
+}
+
+/// Whether a straight stretch leads no nearer to what has been seen than its start is, but where it stays out of reach.
+pub(super) fn gets_past(
+    mut seen_m: impl Iterator<Item = Point2<f64>>,
+    stretch: [Point2<f64>; 2],
+    reach_m: f64,
+) -> bool {
+    seen_m.all(|point| distance_to(stretch, point) >= distance(&stretch[0], &point).min(reach_m) - NEARER_M)
 }
 
 /// The corners of a path from a distance along it on, with the place at that distance.

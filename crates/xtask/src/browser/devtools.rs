@@ -69,15 +69,25 @@ impl Connection {
                 }
                 return Ok(received["result"].take());
             }
-            if let Some(method) = received["method"].as_str() {
-                self.events.push_back(Event {
-                    session: received["sessionId"].as_str().map(str::to_owned),
-                    method: method.to_owned(),
-                    params: received["params"].take(),
-                });
-            }
+            self.note_event(received);
         }
         bail!("{method} was not answered within {} s", CALL_LIMIT.as_secs());
+    }
+
+    /// The next event, of any tab; waits for one.
+    pub(super) fn next_event(&mut self) -> Result<Event> {
+        loop {
+            if let Some(event) = self.take_event() {
+                return Ok(event);
+            }
+            let received = self.receive()?;
+            self.note_event(received);
+        }
+    }
+
+    /// The first of the events that arrived so far.
+    pub(super) fn take_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
     }
 
     /// Takes the events of a tab that arrived so far.
@@ -88,6 +98,16 @@ impl Connection {
             .partition::<Vec<Event>, _>(|event| event.session.as_deref() == Some(session));
         self.events = kept.into();
         taken
+    }
+
+    fn note_event(&mut self, mut received: Value) {
+        if let Some(method) = received["method"].as_str() {
+            self.events.push_back(Event {
+                session: received["sessionId"].as_str().map(str::to_owned),
+                method: method.to_owned(),
+                params: received["params"].take(),
+            });
+        }
     }
 
     fn receive(&mut self) -> Result<Value> {

@@ -4,7 +4,6 @@
 
 use std::{
     fs,
-    io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::Arc,
@@ -14,7 +13,12 @@ use anyhow::{Context as _, Result, bail};
 use data_encoding::BASE64;
 use serde_json::{Value, json};
 
-use super::{Picture, Profile, devtools::Connection, wait_for_address};
+use super::{
+    Picture, Profile,
+    devtools::Connection,
+    display::{Display, Hands},
+    wait_for_address,
+};
 use crate::process::{find_program, lead_group};
 
 /// What Firefox is called on various systems.
@@ -42,8 +46,7 @@ user_pref(\"browser.sessionstore.resume_from_crash\", false);
 /// A running Firefox; ends when it is dropped.
 pub struct Firefox {
     process: Child,
-    /// The display that was started for it.
-    display: Option<Child>,
+    display: Option<Display>,
     // Goes after the process does.
     _profile: Arc<Profile>,
     connection: Connection,
@@ -77,15 +80,11 @@ impl Firefox {
         let mut command = Command::new(program);
         prepare(&mut command);
         // Headless Firefox draws nothing in WebGL on most systems; a display in memory will do.
-        let mut display = None;
-        if std::env::var_os("DISPLAY").is_none() {
-            display = start_display()?;
-            match &display {
-                Some((_, name)) => command.env("DISPLAY", name),
-                None => command.arg("--headless"),
-            };
-        }
-        let display = display.map(|(server, _)| server);
+        let display = Display::open()?;
+        match &display {
+            Some(display) => command.env("DISPLAY", display.name()),
+            None => command.arg("--headless"),
+        };
         let mut process = command
             .args(["--no-remote", "--remote-debugging-port=0", "--profile"])
             .arg(profile.folder())
@@ -123,6 +122,11 @@ impl Firefox {
     /// The process that leads all others, if Firefox was started on a profile.
     pub fn leader(&self) -> u32 {
         self.process.id()
+    }
+
+    /// Hands for its display, if it has one and `xdotool` is installed.
+    pub fn hands(&self) -> Result<Option<Hands>> {
+        self.display.as_ref().map_or(Ok(None), Display::hands)
     }
 
     /// Goes to an address and waits until the document is loaded.
@@ -220,25 +224,5 @@ impl Drop for Firefox {
             let _ = self.process.kill();
         }
         let _ = self.process.wait();
-        if let Some(display) = &mut self.display {
-            let _ = display.kill();
-            let _ = display.wait();
-        }
     }
-}
-
-/// A display in memory with its name, where there is a program for that.
-pub(super) fn start_display() -> Result<Option<(Child, String)>> {
-    let Some(program) = find_program(&["Xvfb"]) else { return Ok(None) };
-    let mut server = Command::new(program)
-        .args(["-displayfd", "1", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"])
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .context("Xvfb could not be started")?;
-    let mut number = String::new();
-    let output = server.stdout.take().context("Xvfb has no output")?;
-    BufReader::new(output).read_line(&mut number)?;
-    Ok(Some((server, format!(":{}", number.trim()))))
 }

@@ -3,12 +3,14 @@
 mod axe;
 mod context;
 mod devtools;
+mod display;
 mod find;
 mod firefox;
 mod keys;
 mod picture;
 mod tab;
 mod webkit;
+mod webkit_on_disk;
 
 use std::{
     fs,
@@ -29,12 +31,14 @@ use serde_json::json;
 
 pub use axe::axe_script;
 pub use context::Context;
+pub use display::Hands;
 pub use find::{find_or_install_chromium, is_root};
 pub use firefox::Firefox;
 pub use keys::{Key, Modifiers};
 pub use picture::Picture;
 pub use tab::{Tab, Widget};
 pub use webkit::{WebKit, WebKitPrograms};
+pub use webkit_on_disk::WebKitOnDisk;
 
 use devtools::Connection;
 

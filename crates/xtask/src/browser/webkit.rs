@@ -5,7 +5,7 @@
 use std::{
     io::{Read as _, Write as _},
     net::{TcpListener, TcpStream},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::Arc,
     thread,
@@ -15,7 +15,7 @@ use std::{
 use anyhow::{Context as _, Result, bail, ensure};
 use serde_json::{Value, json};
 
-use super::{Profile, firefox::start_display};
+use super::{Profile, display::Display};
 use crate::process::find_program;
 
 /// Where Debian puts the browser that the driver drives.
@@ -33,7 +33,8 @@ const LIMIT_MILLIS: u32 = 120_000;
 /// A running browser; ends when it is dropped.
 pub struct WebKit {
     driver: Child,
-    display: Option<Child>,
+    // Goes after the driver does.
+    _display: Display,
     // Goes after the driver does.
     _home: Arc<Profile>,
     port: u16,
@@ -47,15 +48,18 @@ pub struct WebKitPrograms {
     browser: PathBuf,
 }
 
+impl WebKitPrograms {
+    pub(super) fn browser(&self) -> &Path {
+        &self.browser
+    }
+}
+
 impl WebKit {
     /// The driver, the browser and a display, if they are there.
     pub fn find() -> Option<WebKitPrograms> {
         let driver = find_program(&["WebKitWebDriver"])?;
         let browser = BROWSERS.map(PathBuf::from).into_iter().find(|path| path.is_file())?;
-        if std::env::var_os("DISPLAY").is_none() {
-            find_program(&["Xvfb"])?;
-        }
-        Some(WebKitPrograms { driver, browser })
+        Display::is_there().then_some(WebKitPrograms { driver, browser })
     }
 
     /// Starts the browser with an empty page.
@@ -63,14 +67,9 @@ impl WebKit {
         let home = Profile::create()?;
         // Free a moment ago; the driver can only be told a number.
         let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
-        let mut command = Command::new(&programs.driver);
-        let mut display = None;
-        if std::env::var_os("DISPLAY").is_none() {
-            let (server, name) = start_display()?.context("there is no Xvfb")?;
-            command.env("DISPLAY", name);
-            display = Some(server);
-        }
-        let driver = command
+        let display = Display::open()?.context("there is no Xvfb")?;
+        let driver = Command::new(&programs.driver)
+            .env("DISPLAY", display.name())
             .arg(format!("--port={port}"))
             .envs([("HOME", home.folder()), ("XDG_RUNTIME_DIR", home.folder())])
             // Mesa draws where there is no graphics card.
@@ -80,7 +79,7 @@ impl WebKit {
             .stderr(Stdio::null())
             .spawn()
             .with_context(|| format!("{} could not be started", programs.driver.display()))?;
-        let mut webkit = Self { driver, display, _home: home, port, session: String::new() };
+        let mut webkit = Self { driver, _display: display, _home: home, port, session: String::new() };
         let begun = Instant::now();
         while TcpStream::connect(("127.0.0.1", port)).is_err() {
             ensure!(begun.elapsed() < START_LIMIT, "the driver of WebKit did not start");
@@ -186,9 +185,5 @@ impl Drop for WebKit {
         let _ = self.call("DELETE", &self.session, &json!({}));
         let _ = self.driver.kill();
         let _ = self.driver.wait();
-        if let Some(display) = &mut self.display {
-            let _ = display.kill();
-            let _ = display.wait();
-        }
     }
 }

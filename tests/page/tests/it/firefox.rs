@@ -300,3 +300,52 @@ fn firefox_that_resists_fingerprinting_draws() -> Result<()> {
     assert_eq!(firefox.evaluate("enroute.state().renderer")?, "webgl2");
     Ok(())
 }
+
+/// What Chromium scrolls for one notch of the wheel, in CSS pixels.
+const NOTCH: f64 = 120.0;
+
+#[test]
+fn a_notch_scrolls_firefox_as_far_as_chromium_and_alt_stays_in_the_page() -> Result<()> {
+    let Some(mut firefox) = firefox("")? else { return Ok(()) };
+    let Some(mut hands) = firefox.hands()? else {
+        not_tried("xdotool or Xvfb is not installed (on Debian: apt-get install xdotool xvfb)");
+        return Ok(());
+    };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    if let Some(reason) = firefox.open_page(server.url())? {
+        not_tried(&reason);
+        return Ok(());
+    }
+    firefox.ask("enroute.setSource('// line\\n'.repeat(400))")?;
+    firefox.begin_typing()?;
+    let row = |firefox: &mut Firefox, y: f64| -> Result<i64> {
+        let text = firefox.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
+        let place = |from: &str| text[from].as_f64().unwrap_or_default() + 60.0;
+        firefox.click(place("x"), place("y") + y)?;
+        settle(firefox)?;
+        let caret = firefox.ask("enroute.state().caret.head")?;
+        Ok(caret.as_i64().context("a caret")? / "// line\n".len() as i64)
+    };
+    let first = row(&mut firefox, 0.0)?;
+    let row_height = 100.0 / (row(&mut firefox, 100.0)? - first) as f64;
+    firefox.ask("addEventListener('wheel', ({ deltaMode, deltaY }) => (window.notch = [deltaMode, deltaY]), true)")?;
+    let at = firefox.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
+    let screen = firefox.ask("[mozInnerScreenX, mozInnerScreenY]")?;
+    let place = |from: &str, at_index: usize| {
+        at[from].as_f64().unwrap_or_default() + 80.0 + screen[at_index].as_f64().unwrap_or_default()
+    };
+    hands.act(&format!("mousemove {:.0} {:.0} click 5", place("x", 0), place("y", 1)))?;
+    Driven::wait_until(&mut firefox, "'notch' in window")?;
+    settle(&mut firefox)?;
+    let scrolled = (row(&mut firefox, 0.0)? - first) as f64 * row_height;
+    let notch = firefox.ask("notch")?;
+    println!("{notch} {row_height} {scrolled}");
+    assert!((scrolled - NOTCH).abs() <= row_height, "{scrolled} pixels of {notch}, rows of {row_height}");
+    Ok(())
+}
+
+/// Waits until what moves has come to rest.
+fn settle(firefox: &mut Firefox) -> Result<()> {
+    firefox.ask("new Promise((done) => { let left = 20; const next = () => (left-- > 0 ? requestAnimationFrame(next) : done(0)); next(); })")?;
+    Ok(())
+}
