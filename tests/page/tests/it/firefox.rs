@@ -10,7 +10,7 @@ use std::{
 use anyhow::{Context as _, Result, ensure};
 use serde_json::Value;
 use xtask::{
-    browser::{Firefox, WebKit},
+    browser::{Firefox, Hands, WebKit},
     dist,
     process::find_program,
     server::SiteServer,
@@ -135,6 +135,41 @@ fn use_page(browser: &mut dyn Driven, name: &str) -> Result<()> {
     outcome
 }
 
+/// Has the browser lose what it draws with.
+const LOSE_CONTEXT: &str = "(() => {
+    window.textBefore = enroute.source();
+    window.lostCanvas = document.getElementById('canvas');
+    lostCanvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+})()";
+
+/// Opens the mission again from a file that begins with a comment, and saves it.
+fn open_and_save(browser: &mut dyn Driven) -> Result<()> {
+    // No dialog of the browser can be driven: what it would choose is chosen, and what it would be given is taken.
+    browser.ask(
+        "(() => {
+            const text = '// opened\\n' + enroute.source();
+            HTMLInputElement.prototype.click = function () {
+                const files = new DataTransfer();
+                files.items.add(new File([text], 'opened.rmpl'));
+                this.files = files.files;
+                this.dispatchEvent(new Event('change'));
+            };
+            HTMLAnchorElement.prototype.click = function () {
+                window.savedAs = this.download;
+            };
+            URL.createObjectURL = (blob) => {
+                blob.text().then((text) => (window.saved = text));
+                return 'blob:none';
+            };
+        })()",
+    )?;
+    browser.ask("enroute.dispatch('file.open')")?;
+    browser.wait_until("enroute.source().startsWith('// opened')")?;
+    browser.wait_until("enroute.state().status === 'plan'")?;
+    browser.ask("enroute.dispatch('file.save')")?;
+    browser.wait_until("savedAs === 'opened.rmpl' && saved === enroute.source()")
+}
+
 fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     let server = SiteServer::start(published, 0, false)?;
     let url = server.url().to_owned();
@@ -145,6 +180,7 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     browser.wait_until("enroute.state().status === 'plan'")?;
     assert_eq!(browser.ask("enroute.state().verdict.valid")?, true);
     browser.wait_until("document.getElementById('announcements').textContent.includes('verified')")?;
+    open_and_save(browser)?;
     browser.begin_typing()?;
     browser.press("// once")?;
     browser.wait_until("enroute.source().startsWith('// once')")?;
@@ -158,6 +194,18 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     browser.wait_until("!enroute.source().startsWith('// once')")?;
     browser.ask("enroute.dispatch('edit.redo')")?;
     browser.wait_until("enroute.source().startsWith('// once')")?;
+    // A lost context is followed by another canvas, with everything as it was.
+    browser.ask(LOSE_CONTEXT)?;
+    browser.wait_until("document.getElementById('canvas') !== lostCanvas")?;
+    browser.wait_until(
+        "!document.querySelector('#loading[role=alert]') && enroute.source().startsWith('// once')",
+    )?;
+    browser.begin_typing()?;
+    browser.press("// again ")?;
+    browser.wait_until("enroute.source().startsWith('// again // once')")?;
+    browser.ask("enroute.dispatch('edit.undo')")?;
+    browser.wait_until("!enroute.source().startsWith('// again // once')")?;
+    browser.ask("enroute.setSource(textBefore)")?;
     browser.wait_until("enroute.state().library.keeping === 'kept'")?;
     // The second visit is answered by the service worker, which isolates the page from others.
     browser.wait_until("navigator.serviceWorker.ready.then(() => true)")?;
@@ -301,51 +349,102 @@ fn firefox_that_resists_fingerprinting_draws() -> Result<()> {
     Ok(())
 }
 
+/// Firefox with hands for its display, or a word that something is missing.
+fn firefox_with_hands() -> Result<Option<(Firefox, Hands)>> {
+    let Some(firefox) = firefox("")? else { return Ok(None) };
+    let hands = firefox.hands()?;
+    if hands.is_none() {
+        not_tried("xdotool or Xvfb is not installed (on Debian: apt-get install xdotool xvfb)");
+    }
+    Ok(hands.map(|hands| (firefox, hands)))
+}
+
+/// Moves the pointer of the display to a place of the page.
+fn point_at(firefox: &mut Firefox, hands: &mut Hands, [x, y]: [f64; 2]) -> Result<()> {
+    let corner = firefox.evaluate("[mozInnerScreenX, mozInnerScreenY]")?;
+    let on_screen = |at: f64, index: usize| at + corner[index].as_f64().unwrap_or_default();
+    hands.act(&format!("mousemove {:.0} {:.0}", on_screen(x, 0), on_screen(y, 1)))
+}
+
+/// A place in the text of the mission, so many pixels from its corner.
+fn in_text(firefox: &mut Firefox, [x, y]: [f64; 2]) -> Result<[f64; 2]> {
+    let text = firefox.evaluate("enroute.widgets('textbox', 'Mission text')[0]")?;
+    let from = |name: &str| text[name].as_f64().context("the text is nowhere");
+    Ok([from("x")? + x, from("y")? + y])
+}
+
+/// Waits until what moves has come to rest.
+fn settle(firefox: &mut Firefox) -> Result<()> {
+    let frames = "new Promise((done) => {
+        let left = 20;
+        const next = () => (left-- > 0 ? requestAnimationFrame(next) : done(0));
+        next();
+    })";
+    firefox.evaluate(frames).map(|_| ())
+}
+
 /// What Chromium scrolls for one notch of the wheel, in CSS pixels.
 const NOTCH: f64 = 120.0;
 
 #[test]
-fn a_notch_scrolls_firefox_as_far_as_chromium_and_alt_stays_in_the_page() -> Result<()> {
-    let Some(mut firefox) = firefox("")? else { return Ok(()) };
-    let Some(mut hands) = firefox.hands()? else {
-        not_tried("xdotool or Xvfb is not installed (on Debian: apt-get install xdotool xvfb)");
-        return Ok(());
-    };
+fn a_notch_of_the_wheel_scrolls_firefox_as_far_as_chromium() -> Result<()> {
+    const LINE: &str = "// line\n";
+    let Some((mut firefox, mut hands)) = firefox_with_hands()? else { return Ok(()) };
     let server = SiteServer::start(&SITE, 0, false)?;
     if let Some(reason) = firefox.open_page(server.url())? {
         not_tried(&reason);
         return Ok(());
     }
-    firefox.ask("enroute.setSource('// line\\n'.repeat(400))")?;
+    firefox.evaluate(&format!("enroute.setSource({}.repeat(400))", Value::from(LINE)))?;
     firefox.begin_typing()?;
-    let row = |firefox: &mut Firefox, y: f64| -> Result<i64> {
-        let text = firefox.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
-        let place = |from: &str| text[from].as_f64().unwrap_or_default() + 60.0;
-        firefox.click(place("x"), place("y") + y)?;
+    let row_at = |firefox: &mut Firefox, y: f64| -> Result<f64> {
+        let [x, y] = in_text(firefox, [80.0, y])?;
+        firefox.click(x, y)?;
         settle(firefox)?;
-        let caret = firefox.ask("enroute.state().caret.head")?;
-        Ok(caret.as_i64().context("a caret")? / "// line\n".len() as i64)
+        let caret = firefox.evaluate("enroute.state().caret.head")?.as_f64().context("a caret")?;
+        Ok((caret / LINE.len() as f64).floor())
     };
-    let first = row(&mut firefox, 0.0)?;
-    let row_height = 100.0 / (row(&mut firefox, 100.0)? - first) as f64;
-    firefox.ask("addEventListener('wheel', ({ deltaMode, deltaY }) => (window.notch = [deltaMode, deltaY]), true)")?;
-    let at = firefox.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
-    let screen = firefox.ask("[mozInnerScreenX, mozInnerScreenY]")?;
-    let place = |from: &str, at_index: usize| {
-        at[from].as_f64().unwrap_or_default() + 80.0 + screen[at_index].as_f64().unwrap_or_default()
-    };
-    hands.act(&format!("mousemove {:.0} {:.0} click 5", place("x", 0), place("y", 1)))?;
-    Driven::wait_until(&mut firefox, "'notch' in window")?;
+    let first = row_at(&mut firefox, 60.0)?;
+    let row_height = 100.0 / (row_at(&mut firefox, 160.0)? - first);
+    firefox.evaluate("addEventListener('wheel', ({ deltaMode }) => (window.notchIn = deltaMode), true)")?;
+    let place = in_text(&mut firefox, [80.0, 60.0])?;
+    point_at(&mut firefox, &mut hands, place)?;
+    hands.act("click 5")?;
+    Driven::wait_until(&mut firefox, "'notchIn' in window")?;
+    assert_eq!(firefox.evaluate("notchIn")?, 1, "a wheel of Firefox turns by lines");
     settle(&mut firefox)?;
-    let scrolled = (row(&mut firefox, 0.0)? - first) as f64 * row_height;
-    let notch = firefox.ask("notch")?;
-    println!("{notch} {row_height} {scrolled}");
-    assert!((scrolled - NOTCH).abs() <= row_height, "{scrolled} pixels of {notch}, rows of {row_height}");
+    let scrolled = (row_at(&mut firefox, 60.0)? - first) * row_height;
+    assert!((scrolled - NOTCH).abs() <= row_height, "{scrolled} pixels, rows of {row_height}");
     Ok(())
 }
 
-/// Waits until what moves has come to rest.
-fn settle(firefox: &mut Firefox) -> Result<()> {
-    firefox.ask("new Promise((done) => { let left = 20; const next = () => (left-- > 0 ? requestAnimationFrame(next) : done(0)); next(); })")?;
-    Ok(())
+#[test]
+fn alt_alone_takes_the_keyboard_from_no_text_in_firefox() -> Result<()> {
+    let Some((mut firefox, mut hands)) = firefox_with_hands()? else { return Ok(()) };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    // Presses Alt, then a letter.
+    let mut press_both = |firefox: &mut Firefox, place: [f64; 2]| -> Result<()> {
+        point_at(firefox, &mut hands, place)?;
+        hands.act("click 1")?;
+        settle(firefox)?;
+        hands.act("key Alt_L")?;
+        settle(firefox)?;
+        hands.act("key q")?;
+        settle(firefox)
+    };
+    firefox.go_to("data:text/html,<textarea style='position:fixed;inset:0;width:100vw;height:100vh'>")?;
+    press_both(&mut firefox, [200.0, 200.0])?;
+    if firefox.evaluate("document.querySelector('textarea').value")? != "" {
+        not_tried("this Firefox has no menu bar that Alt goes to");
+        return Ok(());
+    }
+    if let Some(reason) = firefox.open_page(server.url())? {
+        not_tried(&reason);
+        return Ok(());
+    }
+    firefox.evaluate("enroute.setSource('// line')")?;
+    firefox.begin_typing()?;
+    let place = in_text(&mut firefox, [120.0, 60.0])?;
+    press_both(&mut firefox, place)?;
+    Driven::wait_until(&mut firefox, "enroute.source().includes('q')")
 }
