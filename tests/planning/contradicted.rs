@@ -8,10 +8,10 @@ use acceptance::random::{crowded_mission, small_mission};
 use link::Update;
 use mission::{Core, Manner};
 use review::contradict::{Effort, Observed, Sight, Trial, Tried, Verdict};
-use review::{FlightRules, Section, review};
+use review::{FlightRules, MissionRule, Section, review};
 use snapshot::Goal;
 use test_core::Answers;
-use tpn::generate::Rng;
+use tpn::{Network, OccurrenceKind, Supply, generate::Rng};
 
 /// The text of a mission number.
 type Made = fn(u64) -> String;
@@ -24,6 +24,9 @@ const DRIVING_MISSIONS: u64 = 12;
 const OTHER_MISSIONS: &str = "ENROUTE_DRIVING_MISSIONS";
 const EFFORT: Effort = Effort { schedules: 40, runs: 8, seed: 5 };
 
+/// Flight rules for each mission.
+const RULES: usize = 24;
+
 /// What was tried.
 #[derive(Default, Debug)]
 struct Count {
@@ -33,6 +36,8 @@ struct Count {
     lines: u64,
     schedules: u64,
     runs: u64,
+    /// Flight rules among the lines.
+    rules: u64,
     contradicted: Vec<String>,
 }
 
@@ -48,6 +53,48 @@ fn with_nature(text: &str, seed: u64) -> String {
     changed
 }
 
+/// Flight rules about what a mission has, by chance. Many do not hold.
+fn random_rules(network: &Network, seed: u64) -> FlightRules {
+    let mut rng = Rng::new(seed ^ 0x72_756c_6573);
+    let performed = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
+    let performed: Vec<&str> = performed.map(|it| it.activity.as_str()).collect();
+    let levels = network.resources.iter().map(|it| {
+        let most = match it.supply {
+            Supply::Reusable { capacity } => capacity,
+            Supply::Reservoir { greatest, .. } => greatest,
+        };
+        (it.name.as_str(), most.to_f64() as i64)
+    });
+    let levels: Vec<(&str, i64)> = levels.collect();
+    let values: Vec<String> = (network.variables.iter())
+        .flat_map(|of| of.values.iter().map(|value| format!("{}={value}", of.name)))
+        .collect();
+    let mut condition = || {
+        let any = |rng: &mut Rng, count: usize| rng.between(0, count as i64 - 1) as usize;
+        match rng.between(0, 2) {
+            0 if !performed.is_empty() => performed[any(&mut rng, performed.len())].to_owned(),
+            1 if !levels.is_empty() => {
+                let (name, most) = levels[any(&mut rng, levels.len())];
+                let order = ["<", "<=", ">", ">="][any(&mut rng, 4)];
+                format!("{name} {order} {}", rng.between(0, most))
+            }
+            _ if !values.is_empty() => values[any(&mut rng, values.len())].clone(),
+            _ => "NOTHING".to_owned(),
+        }
+    };
+    let rules = (0..RULES).map(|index| {
+        let (first, other) = (condition(), condition());
+        let rule = match index % 4 {
+            0 => format!("always {first}"),
+            1 => format!("never {first}"),
+            2 => format!("never {first} while {other}"),
+            _ => format!("({first} or {other}) at end"),
+        };
+        MissionRule { name: format!("R{index} ({rule})"), rule, ..MissionRule::default() }
+    });
+    FlightRules { rules: rules.collect(), ..FlightRules::default() }
+}
+
 fn try_mission(text: &str, seed: u64, effort: Effort, count: &mut Count) {
     let mut core = Core::default();
     let mut host = Answers::default();
@@ -61,7 +108,8 @@ fn try_mission(text: &str, seed: u64, effort: Effort, count: &mut Count) {
     count.plans += 1;
     count.with_nature += u64::from(has_nature);
     let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
-    reviewed.hold_against(&snapshot, &FlightRules::default(), None, &mut || false);
+    let rules = random_rules(&evaluated.planned.network, seed);
+    reviewed.hold_against(&snapshot, &rules, None, &mut || false);
     let Some(mut trial) = Trial::new(&snapshot, &reviewed, None, effort) else { return };
     while core.try_next(&evaluated, &mut trial).expect("its times fit") {}
     let is_tried = |tried: &&Tried| tried.verdict() != Verdict::NotTried;
@@ -69,6 +117,7 @@ fn try_mission(text: &str, seed: u64, effort: Effort, count: &mut Count) {
         count.lines += 1;
         count.schedules += tried.schedules;
         count.runs += tried.runs;
+        count.rules += u64::from(tried.line.section == Section::MissionRules);
         if let Some(found) = &tried.counterexample {
             let (section, line) = (tried.line.section, &tried.line.text);
             let problem = format!("seed {seed}, {section:?}: {line}: {}\n{text}", found.text);
@@ -94,9 +143,9 @@ fn nothing_that_reviews_of_random_missions_have_passed_is_contradicted() {
             try_mission(&text, seed, EFFORT, &mut count);
             try_mission(&with_nature(&text, seed), seed, EFFORT, &mut count);
         }
-        let Count { plans, with_nature, lines, schedules, runs, contradicted } = count;
+        let Count { plans, with_nature, lines, schedules, runs, rules, contradicted } = count;
         println!(
-            "{kind}: {plans} plans ({with_nature} with nature), {lines} lines, {schedules} schedules, {runs} runs"
+            "{kind}: {plans} plans ({with_nature} with nature), {lines} lines ({rules} rules), {schedules} schedules, {runs} runs"
         );
         assert!(contradicted.is_empty(), "{}: {}", contradicted.len(), contradicted.join("\n"));
         assert!(plans > MISSIONS / 4 && lines > plans && schedules > lines && runs > 0, "{kind}");
@@ -428,8 +477,8 @@ fn nothing_that_reviews_of_driving_missions_have_passed_is_contradicted() {
         for seed in other.clone().unwrap_or(0..DRIVING_MISSIONS) {
             try_mission(&mission(seed), seed, effort, &mut count);
         }
-        let Count { plans, lines, runs, contradicted, .. } = count;
-        println!("{kind}: {plans} plans, {lines} lines, {runs} runs");
+        let Count { plans, lines, runs, rules, contradicted, .. } = count;
+        println!("{kind}: {plans} plans, {lines} lines ({rules} rules), {runs} runs");
         assert!(contradicted.is_empty(), "{}: {}", contradicted.len(), contradicted.join("\n"));
         assert!(other.is_some() || plans > DRIVING_MISSIONS / 3, "{kind}: {plans} plans");
         assert!(runs > plans, "{kind}: {plans} plans, {runs} runs");

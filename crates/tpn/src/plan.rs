@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
 use exact::{Bound, Rational, Time};
+use rmpl::program::LabelMode;
 use serde::{Deserialize, Serialize};
 
 use crate::network::{
@@ -71,6 +72,23 @@ impl Plan {
     /// What makes it another plan than others of its network.
     fn identity(&self) -> (&[Choice], &[CausalLink], &[Ordering], &[StateOrder]) {
         (&self.choices, &self.causal_links, &self.conflict_order, &self.state_order)
+    }
+
+    /// What gives a variable its values, of what the plan selects: where it keeps them in the plan's order, the initial value
+    /// first.
+    pub fn told(&self, network: &Network, variable: VariableId) -> Vec<LabelId> {
+        let labels = network.labels.iter().enumerate().filter(|(_, label)| {
+            label.literal.variable == variable
+                && label.mode == LabelMode::Tell
+                && self.selected_arcs.get(label.arc.index()) == Some(&true)
+        });
+        let mut told: Vec<LabelId> = labels.map(|(at, _)| LabelId::from_index(at)).collect();
+        // A plan orders what is more than one.
+        if let Some(order) = self.state_order.iter().find(|order| order.variable == variable) {
+            let places: BTreeMap<LabelId, usize> = order.producers.iter().copied().zip(0..).collect();
+            told.sort_by_key(|label| places.get(label));
+        }
+        told
     }
 
     /// All that planning added to the network: what causal links, orderings and orderings of uses say about times.

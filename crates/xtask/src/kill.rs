@@ -228,7 +228,7 @@ impl Running {
                 let middle = |from: &str, size: &str| Some(text[from].as_f64()? + text[size].as_f64()? / 2.0);
                 let place = middle("x", "width").zip(middle("y", "height"));
                 let (x, y) = place.context("the text is nowhere")?;
-                firefox.click(x, y)?;
+                firefox.click(0, x, y)?;
                 firefox.wait_until("document.querySelector('[aria-activedescendant]')")
             }
             Self::WebKit(webkit) => {

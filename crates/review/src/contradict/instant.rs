@@ -3,9 +3,11 @@
 
 use exact::{Rational, Time};
 use executive::{Entry, Happening};
-use rmpl::program::{Change, LabelMode, Program};
+use rmpl::program::{Change, Program};
 use rmpl::rule::{Activity, Formula, Moment, Rule};
-use tpn::{Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, ValueId, ValueSet};
+use tpn::{
+    Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, Supply, ValueId, ValueSet, VariableId,
+};
 
 /// One schedule of a plan.
 #[derive(Clone, Copy)]
@@ -186,18 +188,13 @@ impl Instant<'_> {
                 (false, values.iter().all(excluded))
             }
         };
-        let labels = network.labels.iter().enumerate().filter(|(_, label)| {
-            label.literal.variable.index() == index
-                && label.mode == LabelMode::Tell
-                && self.of.plan.selected_arcs.get(label.arc.index()) == Some(&true)
-        });
-        let told = labels.filter_map(|(at, label)| {
-            let id = LabelId::from_index(at);
+        let told = self.of.plan.told(network, VariableId::from_index(index)).into_iter().filter_map(|id| {
+            let label = &network.labels[id.index()];
             let (start, end) = network.interval(id);
             let (start, end) = (self.of.time(start)?, self.of.time(end)?);
             Some(Told { start, end, label: id, extent: label.extent, is: is(&label.literal.values) })
         });
-        let mut told: Vec<Told> = told.collect();
+        let told: Vec<Told> = told.collect();
         let (mut yes, mut no) = (false, false);
         if !variable.is_lasting {
             for it in told.iter().filter(|it| self.is_inside(it.start, Some(it.end))) {
@@ -206,8 +203,6 @@ impl Instant<'_> {
             }
             return (yes, no);
         }
-        // A change follows those that are over when it begins.
-        told.sort_by_key(|it| (it.extent != Extent::Initial, it.start, it.end));
         for (at, it) in told.iter().enumerate() {
             let ready = if it.extent == Extent::Effect { it.end } else { it.start };
             let literal = |it: &Told| &network.labels[it.label.index()].literal;
@@ -242,7 +237,10 @@ impl Instant<'_> {
             }
             let change = then.checked_sub(shown)?;
             shown = *then;
-            if !self.touches || entry.time < self.at || by.as_ref().is_none_or(|by| has_started(by)) {
+            // At a moment what is produced then is there, and what starts to take or to use then has not done so yet.
+            let is_produced = matches!(resource.supply, Supply::Reservoir { .. }) && change > Rational::ZERO;
+            let is_there = is_produced || by.as_ref().is_none_or(|by| has_started(by));
+            if !self.touches || entry.time < self.at || is_there {
                 level = level.checked_add(change)?;
             }
         }

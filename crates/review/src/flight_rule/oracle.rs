@@ -31,7 +31,7 @@ impl Chance {
             4 => "Charge()".to_owned(),
             5 => format!("Comm=UP {}", self.bounds()),
             6 => format!("Comm=DOWN {}", self.bounds()),
-            7 => "Mast=UP".to_owned(),
+            7 => format!("Mast={} {}", ["UP", "DOWN"][self.below(2) as usize], self.bounds()),
             8 => "Deploy()".to_owned(),
             9 => "Store()".to_owned(),
             _ => format!("Talk(){}", self.bounds()),
@@ -106,6 +106,9 @@ enum Truth {
     Yes,
 }
 
+/// When an assertion starts and ends, its value, how long that lasts, and its place among those of its variable.
+type Told = (i64, i64, String, Extent, Option<usize>);
+
 /// One schedule of a plan, at one tick.
 struct Instant<'a> {
     network: &'a Network,
@@ -124,8 +127,8 @@ impl Instant<'_> {
         from <= self.at && (self.at < to || (self.touches && self.at == to))
     }
 
-    fn told(&self, name: &str) -> Vec<(i64, i64, String, Extent)> {
-        let mut told: Vec<(i64, i64, String, Extent)> = Vec::new();
+    fn told(&self, name: &str) -> Vec<Told> {
+        let mut told: Vec<Told> = Vec::new();
         for (index, label) in self.network.labels.iter().enumerate() {
             let variable = &self.network.variables[label.literal.variable.index()];
             if variable.name != name
@@ -136,7 +139,10 @@ impl Instant<'_> {
             }
             let (start, end) = self.network.interval(tpn::LabelId::from_index(index));
             let value = label.text.split_once('=').expect("a value").1.to_owned();
-            told.push((self.time(start), self.time(end), value, label.extent));
+            let is_it = |producer: &tpn::LabelId| producer.index() == index;
+            let mut orders = self.plan.state_order.iter();
+            let place = orders.find_map(|order| order.producers.iter().position(is_it));
+            told.push((self.time(start), self.time(end), value, label.extent, place));
         }
         told
     }
@@ -145,7 +151,7 @@ impl Instant<'_> {
         let mut told = self.told(name);
         let (mut yes, mut no) = (false, false);
         if name == "Comm" {
-            for (start, end, told, _) in told {
+            for (start, end, told, ..) in told {
                 if self.inside(start, end) {
                     *(if told == value { &mut yes } else { &mut no }) = true;
                 }
@@ -161,9 +167,9 @@ impl Instant<'_> {
             };
             return (value == declared, value != declared);
         }
-        // A change follows those that are over when it begins.
-        told.sort_by_key(|(start, end, _, extent)| (*extent != Extent::Initial, *start, *end));
-        for (index, (start, end, now, extent)) in told.iter().enumerate() {
+        // Of changes at one instant the plan says which follows which.
+        told.sort_by_key(|(start, end, _, extent, place)| (*extent != Extent::Initial, *start, *end, *place));
+        for (index, (start, end, now, extent, _)) in told.iter().enumerate() {
             let ready = if *extent == Extent::Effect { *end } else { *start };
             let next = told[index + 1..]
                 .iter()

@@ -46,6 +46,18 @@ fn what_the_plan_puts_in_order_holds() {
     );
 }
 
+/// Changes that come at one instant follow each other as the plan says.
+#[test]
+fn of_changes_at_one_instant_the_last_one_counts() {
+    let source =
+        "state X : {A, B} = A; scenario S[0,7] = { { X=A [4,6] }, { X=A [0,0]; X=B }, { delay[0,1] } }";
+    holds(source, "X=A at end");
+    holds(source, "X=A from 1 to 7");
+    for rule in ["X=B", "X=B at end", "X=B from 3 to 5"] {
+        assert!(matches!(found(source, rule).outcome, Outcome::Broken(_)), "{rule}");
+    }
+}
+
 #[test]
 fn a_rule_and_its_negation_never_both_hold() {
     const ABC: &str = "state M : {UP, DOWN} = DOWN; var C : {ON, OFF}; option threat_gap = 0;

@@ -186,12 +186,12 @@ impl Firefox {
         self.call("input.performActions", &all).map(|_| ())
     }
 
-    /// Clicks at a place, in CSS pixels.
-    pub fn click(&mut self, x: f64, y: f64) -> Result<()> {
+    /// Clicks with a button of the mouse (0 is the left one, 2 the right one) at a place, in CSS pixels.
+    pub fn click(&mut self, button: u32, x: f64, y: f64) -> Result<()> {
         let actions = json!([
             { "type": "pointerMove", "x": x.round() as i64, "y": y.round() as i64 },
-            { "type": "pointerDown", "button": 0 },
-            { "type": "pointerUp", "button": 0 },
+            { "type": "pointerDown", "button": button },
+            { "type": "pointerUp", "button": button },
         ]);
         let source = json!({ "type": "pointer", "id": "mouse", "actions": actions });
         let all = json!({ "context": self.context, "actions": [source] });

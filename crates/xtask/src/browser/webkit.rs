@@ -121,12 +121,12 @@ impl WebKit {
         self.act(&json!({ "type": "key", "id": "keyboard", "actions": actions }))
     }
 
-    /// Clicks at a place, in CSS pixels.
-    pub fn click(&self, x: f64, y: f64) -> Result<()> {
+    /// Clicks with a button of the mouse (0 is the left one, 2 the right one) at a place, in CSS pixels.
+    pub fn click(&self, button: u32, x: f64, y: f64) -> Result<()> {
         let actions = json!([
             { "type": "pointerMove", "x": x.round() as i64, "y": y.round() as i64 },
-            { "type": "pointerDown", "button": 0 },
-            { "type": "pointerUp", "button": 0 },
+            { "type": "pointerDown", "button": button },
+            { "type": "pointerUp", "button": button },
         ]);
         self.act(&json!({ "type": "pointer", "id": "mouse", "actions": actions }))
     }

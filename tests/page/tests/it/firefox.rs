@@ -19,7 +19,8 @@ use xtask::{
 use crate::opened::SITE;
 use crate::same::every_example_is_the_same;
 
-/// F6, as `WebDriver` spells it.
+/// Escape and F6, as `WebDriver` spells them.
+const ESCAPE: &str = "\u{e00c}";
 const F6: &str = "\u{e036}";
 
 /// A browser that is driven.
@@ -27,7 +28,7 @@ trait Driven {
     fn open(&mut self, url: &str) -> Result<()>;
     fn ask(&mut self, expression: &str) -> Result<Value>;
     fn press(&mut self, keys: &str) -> Result<()>;
-    fn click(&mut self, x: f64, y: f64) -> Result<()>;
+    fn click(&mut self, button: u32, x: f64, y: f64) -> Result<()>;
 
     /// Waits until a JavaScript expression is true; one that throws is not.
     fn wait_until(&mut self, expression: &str) -> Result<()> {
@@ -63,13 +64,18 @@ trait Driven {
         Ok(None)
     }
 
-    /// Clicks into the text and puts the caret at its start.
-    fn begin_typing(&mut self) -> Result<()> {
+    /// Clicks with a button into the middle of the text.
+    fn click_text(&mut self, button: u32) -> Result<()> {
         let text = self.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
         let middle = |from: &str, size: &str| -> f64 {
             text[from].as_f64().unwrap_or_default() + text[size].as_f64().unwrap_or_default() / 2.0
         };
-        self.click(middle("x", "width"), middle("y", "height"))?;
+        self.click(button, middle("x", "width"), middle("y", "height"))
+    }
+
+    /// Clicks into the text and puts the caret at its start.
+    fn begin_typing(&mut self) -> Result<()> {
+        self.click_text(0)?;
         self.wait_until("document.querySelector('[aria-activedescendant]')")?;
         self.ask("enroute.dispatch('edit.select', { start: 0 })")?;
         Ok(())
@@ -89,8 +95,8 @@ impl Driven for Firefox {
         Self::press(self, keys)
     }
 
-    fn click(&mut self, x: f64, y: f64) -> Result<()> {
-        Self::click(self, x, y)
+    fn click(&mut self, button: u32, x: f64, y: f64) -> Result<()> {
+        Self::click(self, button, x, y)
     }
 }
 
@@ -107,8 +113,8 @@ impl Driven for WebKit {
         Self::press(self, keys)
     }
 
-    fn click(&mut self, x: f64, y: f64) -> Result<()> {
-        Self::click(self, x, y)
+    fn click(&mut self, button: u32, x: f64, y: f64) -> Result<()> {
+        Self::click(self, button, x, y)
     }
 }
 
@@ -184,6 +190,10 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     browser.begin_typing()?;
     browser.press("// once")?;
     browser.wait_until("enroute.source().startsWith('// once')")?;
+    browser.click_text(2)?;
+    browser.wait_until("enroute.widgets('menuitem', 'Go to definition').length > 0")?;
+    browser.press(ESCAPE)?;
+    browser.wait_until("enroute.widgets('menuitem', 'Go to definition').length === 0")?;
     browser.press(F6)?;
     browser.wait_until("enroute.state().activePanel !== 'editor'")?;
     // A key is heard also after a screen reader has taken the focus from everything.
@@ -336,6 +346,21 @@ fn firefox_that_blocks_cookies_and_site_data_starts_and_says_what_is_not_kept() 
 }
 
 #[test]
+fn a_private_window_of_firefox_says_that_missions_are_not_kept() -> Result<()> {
+    let settings = "user_pref(\"browser.privatebrowsing.autostart\", true);\n";
+    let Some(mut firefox) = firefox(settings)? else { return Ok(()) };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    if let Some(reason) = firefox.open_page(server.url())? {
+        not_tried(&reason);
+        return Ok(());
+    }
+    firefox.begin_typing()?;
+    Driven::press(&mut firefox, "// once")?;
+    Driven::wait_until(&mut firefox, "enroute.state().library.keeping === 'until-closed'")?;
+    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'Private window').length > 0")
+}
+
+#[test]
 fn firefox_that_resists_fingerprinting_draws() -> Result<()> {
     let Some(mut firefox) = firefox("user_pref(\"privacy.resistFingerprinting\", true);\n")? else {
         return Ok(());
@@ -399,7 +424,7 @@ fn a_notch_of_the_wheel_scrolls_firefox_as_far_as_chromium() -> Result<()> {
     firefox.begin_typing()?;
     let row_at = |firefox: &mut Firefox, y: f64| -> Result<f64> {
         let [x, y] = in_text(firefox, [80.0, y])?;
-        firefox.click(x, y)?;
+        firefox.click(0, x, y)?;
         settle(firefox)?;
         let caret = firefox.evaluate("enroute.state().caret.head")?.as_f64().context("a caret")?;
         Ok((caret / LINE.len() as f64).floor())

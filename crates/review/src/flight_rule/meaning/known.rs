@@ -1,11 +1,10 @@
 //! What a plan lets one know of conditions: which events must have come, and which must not have, for something to hold,
 //! not to hold, or to be open.
 
-use exact::Time;
-use rmpl::program::{LabelMode, Program};
+use rmpl::program::Program;
 use rmpl::rule::Formula;
 use smol_str::SmolStr;
-use tpn::{Extent, LabelId, NodeId, ValueId, ValueSet, Variable};
+use tpn::{Extent, LabelId, NodeId, ValueId, ValueSet, Variable, VariableId};
 
 use super::super::cases::Condition;
 use super::super::cut::Edge;
@@ -145,14 +144,7 @@ impl Meaning<'_> {
             };
         };
         let declared = &self.network.variables[index];
-        let mut told: Vec<LabelId> = (self.network.labels.iter().enumerate())
-            .filter(|(_, label)| {
-                label.literal.variable.index() == index
-                    && label.mode == LabelMode::Tell
-                    && self.plan.selected_arcs.get(label.arc.index()) == Some(&true)
-            })
-            .map(|(at, _)| LabelId::from_index(at))
-            .collect();
+        let told = self.plan.told(self.network, VariableId::from_index(index));
         let is_meant = |label: &LabelId| {
             tells(declared, &self.network.labels[label.index()].literal.values, values, is_among)
         };
@@ -163,7 +155,6 @@ impl Meaning<'_> {
             });
             return Condition::Any(parts.collect());
         }
-        told.sort_by_key(|&label| self.begins(label));
         let parts = (0..told.len()).filter(|&at| is_meant(&told[at])).map(|at| {
             let mut edges = vec![Condition::Edge(Edge::past(self.network.ready(told[at]), true))];
             let next = self.next_changes(&told, at);
@@ -176,16 +167,7 @@ impl Meaning<'_> {
         Condition::Any(parts.collect())
     }
 
-    /// What sorts changes of one variable: the first value, then by when they can begin.
-    fn begins(&self, label: LabelId) -> (bool, Option<Time>, Option<Time>) {
-        let earliest = |node: NodeId| {
-            self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
-        };
-        let is_first = self.network.labels[label.index()].extent == Extent::Initial;
-        (!is_first, earliest(self.network.interval(label).0), earliest(self.network.ready(label)))
-    }
-
-    /// Those of the sorted changes of a variable that may be the first to end what the one at `at` has made.
+    /// Those of the ordered changes of a variable that may be the first to end what the one at `at` has made.
     fn next_changes(&self, told: &[LabelId], at: usize) -> Vec<LabelId> {
         let own = &self.network.labels[told[at].index()];
         let mut next: Vec<LabelId> = Vec::new();
