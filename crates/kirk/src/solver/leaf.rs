@@ -33,7 +33,8 @@ impl Solver {
             let mut broken = self.broken_pairs(problem, &present);
             if problem.touches.rule != Touching::Always && !broken.is_empty() {
                 let unordered = unordered.get_or_insert_with(|| problem.unordered(self));
-                broken.retain(|&pair| !unordered.relates(problem.model, pair));
+                // Where only a part of the mission is looked at, what the rest of it orders may overlap.
+                broken.retain(|&pair| self.overlap(problem, pair) || !unordered.relates(problem.model, pair));
             }
             if broken.is_empty() {
                 continue;
@@ -129,21 +130,26 @@ impl Solver {
 
     /// Whether the least times keep all conflicting pairs apart and satisfy all differences in force.
     pub(super) fn is_solution(&self, problem: &Problem<'_>) -> bool {
-        let is_apart = |left: LabelId, right: LabelId| {
-            let (one, other) = (problem.intervals[left], problem.intervals[right]);
-            !self.trail.holds(one.presence)
-                || !self.trail.holds(other.presence)
-                || self.trail.least(one.end) <= self.trail.least(other.start)
-                || self.trail.least(other.end) <= self.trail.least(one.start)
-        };
         let labels = &problem.labels_by_variable;
         let is_kept = |left: LabelId, right: LabelId| {
-            left == right || !problem.model.conditions.conflict(left, right) || is_apart(left, right)
+            let is_present = |label: LabelId| self.trail.holds(problem.intervals[label].presence);
+            left == right
+                || !problem.model.conditions.conflict(left, right)
+                || !is_present(left)
+                || !is_present(right)
+                || !self.overlap(problem, (left, right))
         };
         labels
             .iter()
             .all(|labels| labels.iter().all(|&left| labels.iter().all(|&right| is_kept(left, right))))
             && self.differences.are_satisfied(&self.trail)
+    }
+
+    /// Whether two intervals that are present overlap in the least times; to touch is not to overlap.
+    fn overlap(&self, problem: &Problem<'_>, (left, right): (LabelId, LabelId)) -> bool {
+        let (one, other) = (problem.intervals[left], problem.intervals[right]);
+        self.trail.least(one.end) > self.trail.least(other.start)
+            && self.trail.least(other.end) > self.trail.least(one.start)
     }
 
     /// Conflicting pairs that overlap in the least times, by a sweep over them.
