@@ -1,8 +1,9 @@
 //! Durations that the environment chooses, in the network (SPEC 13.1): which arcs are the environment's, what plain
 //! bounds require of them, and what a path makes of a drive. Known answers are worked out by hand.
 
-use acceptance::mission::{compile, error_codes, network};
+use acceptance::mission::{compile, error_codes, network, try_plans};
 use exact::{Bound, Rational, Time};
+use kirk::{Search, Status};
 use rmpl::program::Controllability;
 use tpn::path::{PathLeg, TraversePath};
 use tpn::{ArcKind, BlockKind, Network, Top};
@@ -325,4 +326,34 @@ fn every_branch_of_the_worlds_is_told_of_once_and_a_scenario_of_one_branch_has_o
     let text = "var L : {A, B}; Wait() = { delay[1,2]; L=A [3,4] }";
     let (_, diagnostics) = compile(text, &Top::activity("Wait"));
     assert!(diagnostics.iter().all(|it| it.code.0 != "W-EXOGENOUS"), "{diagnostics:?}");
+}
+
+/// What comes at one time in every schedule is put in order, whatever the environment chooses elsewhere (SPEC 10.4).
+#[test]
+fn what_comes_at_one_time_is_in_order_beside_a_contingent_duration() {
+    let texts = [
+        "resource R capacity 1; primitive A()[2,2] uses R; primitive B()[1,1] uses R;
+         scenario S[0,14] = { { W() }, { delay[3,3]; A() }, { delay[5,5]; B() } }",
+        "resource R capacity 1; primitive A()[0,0] uses R; primitive B()[0,0] uses R; primitive C()[0,0] uses R;
+         scenario S[0,14] = { { W() }, { delay[5,5]; A() }, { delay[5,5]; B(); C() } }",
+        "resource T 1..6 = 2; primitive A()[0,0] consumes T 3; primitive B()[0,0] produces T 2;
+         scenario S[0,14] = { { W() }, { delay[5,5]; B() }, { delay[5,5]; A() } }",
+        "resource T 1..6 = 2; primitive A()[0,0] consumes T 3 produces T 2; primitive B()[0,0] produces T 2;
+         scenario S[0,14] = { { W(); B() }, { delay; A() } }",
+        "resource T 0..9 = 4; primitive A()[0,0] requires T >= 4; primitive B()[0,0] consumes T 2;
+         scenario S[0,14] = { { W() }, { delay[5,5]; A() }, { delay[5,5]; B() } }",
+        "resource T 0..9 = 4; primitive A()[2,2] requires T >= 4; primitive B()[0,0] consumes T 2;
+         scenario S[0,14] = { { W() }, { delay[5,5]; A() }, { delay[7,7]; B() } }",
+        "resource T 0..2 = 2; primitive A()[1,1] consumes T 1 produces T 1; primitive B() produces T 0;
+         scenario S[0,7] = { { W() }, { B()[1,1] }, { delay[0,2]; A() } }",
+        "var X : {A, B}; scenario S[0,14] = { { delay[0,5]; do V() maintaining not X=A; X=A [3,3] }, { X=B [0,1] } }",
+    ];
+    for text in texts {
+        let text = format!("primitive W() contingent [0,1]; primitive V() contingent [0,0]; {text}");
+        let network = network(&text);
+        for search in [Search::BestFirst, Search::Chronological, Search::ConflictDirected] {
+            let outcome = try_plans(&network, search, false).unwrap_or_else(|why| panic!("{why}: {text}"));
+            assert_eq!(outcome.status, Status::Plan, "{text}");
+        }
+    }
 }

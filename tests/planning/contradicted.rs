@@ -17,7 +17,7 @@ use tpn::{Network, OccurrenceKind, Supply, generate::Rng};
 type Made = fn(u64) -> String;
 
 /// Missions of each kind.
-const MISSIONS: u64 = 60;
+const MISSIONS: u64 = 400;
 /// Missions in which vehicles drive.
 const DRIVING_MISSIONS: u64 = 12;
 /// The numbers of other missions in which vehicles drive, as `200..300`.
@@ -105,6 +105,11 @@ fn try_mission(text: &str, seed: u64, effort: Effort, count: &mut Count) {
     let Some(plan) = snapshot.plan() else { return };
     let mut arcs = evaluated.planned.network.arcs.iter().zip(&plan.selected_arcs);
     let has_nature = arcs.any(|(arc, is_selected)| arc.is_contingent && *is_selected);
+    if let Some(found) = evaluated.planned.planning.verdict.as_ref().filter(|it| !it.valid) {
+        count
+            .contradicted
+            .push(format!("seed {seed}, the plan is not valid: {:?}\n{text}", found.violations));
+    }
     count.plans += 1;
     count.with_nature += u64::from(has_nature);
     let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rmpl::program::Change;
 use stn::{PointId, Stn};
 use stnu::{Link, LinkError, Part, StrongVerdict, Undecided, Verdict};
-use tpn::UseId;
+use tpn::{NodeId, UseId};
 use typed_index_collections::TiVec;
 
 use super::Solver;
@@ -19,6 +19,7 @@ use super::premise::Premise;
 use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;
+use crate::instants::Before;
 use crate::model::UNBOUNDED_BELOW;
 use crate::model::{INFINITE, ModelArc};
 use crate::trace::Event;
@@ -263,13 +264,16 @@ impl Problem<'_> {
         for &(Edge { from, to, weight }, _) in &in_force.edges {
             stn.insert(PointId(from), PointId(to), weight, 0).ok()?;
         }
+        let mut happens = HappensBefore::new(self, solver);
         for (supply, tasks) in self.shares.tasks() {
             let present: Vec<Task> =
                 tasks.iter().filter(|task| solver.trail.holds(task.interval.presence)).copied().collect();
             match supply {
                 ModelSupply::Reusable { capacity } => {
                     let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
-                    if let Some(critical) = unordered(&mut stn, in_force, &active, capacity)? {
+                    let at = |variable| solver.trail.least(variable);
+                    let orders = (&mut stn, &mut happens);
+                    if let Some(critical) = unordered(orders, in_force, at, (&active, capacity))? {
                         solver.tell(|| Event::Overload { uses: ids(&critical) });
                         solver.retract(0);
                         self.resolve_overload(solver, &critical);
@@ -277,7 +281,8 @@ impl Problem<'_> {
                     }
                 }
                 ModelSupply::Reservoir { least, greatest, level } => {
-                    let critical = out_of_range(&mut stn, in_force, &present, (least, greatest), level)?;
+                    let critical =
+                        out_of_range((&mut stn, &mut happens), in_force, &present, (least, greatest), level)?;
                     let Some(Excess { used, counted, mending, held: around }) = critical else { continue };
                     let is_late = |task: &&Task| {
                         let is_own = used.level.is_some() && task.moment_node() == used.start;
@@ -362,6 +367,37 @@ impl InForce {
     }
 }
 
+/// What happens before what in a solution, where both come at one time.
+struct HappensBefore {
+    after: TiVec<NodeId, Vec<NodeId>>,
+    /// By event, all that happens after it: of those that were asked for.
+    found: BTreeMap<NodeId, BTreeSet<NodeId>>,
+}
+
+impl HappensBefore {
+    fn new(problem: &Problem<'_>, solver: &Solver) -> Self {
+        let mut after: TiVec<NodeId, Vec<NodeId>> = vec![Vec::new(); problem.model.num_nodes].into();
+        for Before { first, then, .. } in problem.happens_before(solver) {
+            after[first].push(then);
+        }
+        Self { after, found: BTreeMap::new() }
+    }
+
+    /// Whether an event happens before another one, or is it.
+    fn is_before(&mut self, first: NodeId, then: NodeId) -> bool {
+        let after = &self.after;
+        let found = self.found.entry(first).or_insert_with(|| {
+            let mut found = BTreeSet::from([first]);
+            let mut open = vec![first];
+            while let Some(node) = open.pop() {
+                open.extend(after[node].iter().copied().filter(|&next| found.insert(next)));
+            }
+            found
+        });
+        found.contains(&then)
+    }
+}
+
 /// Whether one time is never later than others; by position in `then`.
 fn is_before(stn: &mut Stn, in_force: &InForce, first: Variable, then: &[Variable]) -> Option<Vec<bool>> {
     let Some(first) = in_force.points[first] else { return Some(vec![false; then.len()]) };
@@ -372,17 +408,33 @@ fn is_before(stn: &mut Stn, in_force: &InForce, first: Variable, then: &[Variabl
 
 /// Uses that some schedule has at one time, and that are too much together, if there are any.
 #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
-fn unordered(stn: &mut Stn, in_force: &InForce, tasks: &[Task], capacity: i64) -> Option<Option<Vec<Task>>> {
+fn unordered(
+    (stn, happens): (&mut Stn, &mut HappensBefore),
+    in_force: &InForce,
+    at: impl Fn(Variable) -> i64,
+    (tasks, capacity): (&[Task], i64),
+) -> Option<Option<Vec<Task>>> {
     let total: i64 = tasks.iter().map(|task| task.amount).sum();
     if total <= capacity {
         return Some(None);
     }
     let starts: Vec<Variable> = tasks.iter().map(|task| task.interval.start).collect();
+    let ends: Vec<Variable> = tasks.iter().map(|task| task.interval.end).collect();
     let mut order = Vec::with_capacity(tasks.len());
-    for (position, task) in tasks.iter().enumerate() {
-        let mut row = is_before(stn, in_force, task.interval.end, &starts)?;
+    for (position, &end) in ends.iter().enumerate() {
+        let mut row = is_before(stn, in_force, end, &starts)?;
         row[position] = false;
         order.push(row);
+    }
+    // Of an end and a start that are at one time in every schedule, the end has to happen before the start (SPEC 10.4).
+    for (then, &start) in starts.iter().enumerate() {
+        let meets = |first: usize, order: &[Vec<bool>]| order[first][then] && at(ends[first]) == at(start);
+        if (0..tasks.len()).any(|first| meets(first, &order)) {
+            let is_tied = is_before(stn, in_force, start, &ends)?;
+            for first in (0..tasks.len()).filter(|&first| is_tied[first]) {
+                order[first][then] &= happens.is_before(tasks[first].end, tasks[then].start);
+            }
+        }
     }
     let weights: Vec<i64> = tasks.iter().map(|task| task.amount).collect();
     let antichain = heaviest_antichain(&weights, &order);
@@ -408,17 +460,25 @@ struct Excess {
 /// The first excess.
 #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
 fn out_of_range(
-    stn: &mut Stn,
+    (stn, happens): (&mut Stn, &mut HappensBefore),
     in_force: &InForce,
     tasks: &[Task],
     (least, greatest): (i64, i64),
     level: i64,
 ) -> Option<Option<Excess>> {
+    let count = tasks.len();
     let moments: Vec<Variable> = tasks.iter().map(Task::moment).collect();
-    let mut order = Vec::with_capacity(tasks.len());
+    let ends = tasks.iter().map(|task| task.interval.end);
+    let moments_and_ends: Vec<Variable> = moments.iter().copied().chain(ends).collect();
+    let mut order = Vec::with_capacity(count);
     for &moment in &moments {
-        order.push(is_before(stn, in_force, moment, &moments)?);
+        order.push(is_before(stn, in_force, moment, &moments_and_ends)?);
     }
+    // Two that always come at one time are in order only if one happens before the other (SPEC 10.4).
+    let moment = |task: usize| tasks[task].moment_node();
+    let is_first = |happens: &mut HappensBefore, first: usize, then: usize| {
+        order[first][then] && (!order[then][first] || happens.is_before(moment(first), moment(then)))
+    };
     let held: Vec<(Task, usize, Vec<bool>)> = (tasks.iter().enumerate())
         .filter(|(_, task)| task.is_active && task.is_held())
         .map(|(at, task)| Some((*task, at, is_before(stn, in_force, task.interval.end, &moments)?)))
@@ -435,9 +495,9 @@ fn out_of_range(
             } else if used.level.is_some() && other.moment_node() == used.start {
                 false
             } else if is_same {
-                other.is_active && (!order[now][then] || order[then][now])
+                other.is_active && !is_first(happens, now, then)
             } else {
-                order[then][now]
+                is_first(happens, then, now)
             };
             if counts {
                 extreme += other.level_change(used.change == Change::Produces);
@@ -458,8 +518,9 @@ fn out_of_range(
         }
         let around = held.iter().find(|(condition, at, after)| {
             let node = used.moment_node();
-            let is_apart =
-                (order[now][*at] && node != condition.start) || (after[now] && node != condition.end);
+            let is_after = after[now] && (!order[now][count + at] || happens.is_before(condition.end, node));
+            let is_apart = (is_first(happens, now, *at) && node != condition.start)
+                || (is_after && node != condition.end);
             used.level.is_none()
                 && condition.change == used.change
                 && !is_apart

@@ -90,7 +90,7 @@ impl Problem<'_> {
     }
 
     /// What happens before what in the present solution, with the literals that it rests on.
-    fn happens_before(&self, solver: &Solver) -> Vec<Before<[Literal; 2]>> {
+    pub(super) fn happens_before(&self, solver: &Solver) -> Vec<Before<[Literal; 2]>> {
         let model = self.model;
         let mut before = Vec::with_capacity(model.arcs.len());
         for arc in &self.enclosures.mission().arcs {

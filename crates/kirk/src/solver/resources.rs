@@ -141,7 +141,10 @@ impl Problem<'_> {
     pub(super) fn add_resources(&mut self, solver: &mut Solver, part: Part<'_>) {
         let mut taken = Taken::default();
         for resource in &self.model.demands.resources {
-            let tasks = resource.uses.iter().filter(|used| used.amount > 0 || used.level.is_some());
+            // Where the environment chooses, the level counts also where nothing is taken or given (SPEC 11).
+            let counts =
+                |used: &&ModelUse| used.amount > 0 || used.level.is_some() || self.model.has_uncertainty;
+            let tasks = resource.uses.iter().filter(counts);
             let tasks = tasks.map(|used| {
                 let is_active = part.active_uses.is_none_or(|active| active[used.id.index()]);
                 let arc = &self.model.arcs[used.arc];

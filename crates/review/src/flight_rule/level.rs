@@ -76,6 +76,8 @@ pub(super) struct Change {
     pub(super) more: [Rational; 2],
     /// It is the start of something, which comes behind what ends at the same instant.
     pub(super) is_start: bool,
+    /// It frees what the change before it in the list has taken.
+    pub(super) is_release: bool,
 }
 
 impl Change {
@@ -84,10 +86,11 @@ impl Change {
         if used.amount.is_zero() {
             return Vec::new();
         }
-        let change = |node, more, is_start| Self { node, more, is_start };
+        let change = |node, more, is_start| Self { node, more, is_start, is_release: false };
         if used.change == Changes::Uses {
             let less = used.amount.checked_neg().unwrap_or(Rational::ZERO);
-            return vec![change(used.start, [used.amount; 2], true), change(used.end, [less; 2], false)];
+            let release = Self { is_release: true, ..change(used.end, [less; 2], false) };
+            return vec![change(used.start, [used.amount; 2], true), release];
         }
         vec![change(used.moment(), used.level_changes(), used.change == Changes::Consumes)]
     }
@@ -131,14 +134,21 @@ impl Resource {
         wanted: &Wanted,
     ) -> Option<(Rational, Vec<bool>)> {
         let mut has_come = vec![false; self.changes.len()];
-        let mut free = Vec::new();
+        let mut free: Vec<usize> = Vec::new();
+        let mut can_take = false;
         for (index, change) in self.changes.iter().enumerate() {
             let (can_come, can_wait) = change.can_come_or_wait(times, case, wanted.is_instant);
-            if can_come && can_wait {
+            // What begins and ends at the instant is not in use at it: it frees only what it has taken.
+            if can_come && can_wait && (!change.is_release || can_take) {
                 free.push(index);
             } else {
-                has_come[index] = can_come;
+                has_come[index] = can_come && !can_wait;
             }
+            if change.is_release && can_come && !can_wait && free.last() == Some(&(index - 1)) {
+                free.pop();
+                has_come[index - 1] = true;
+            }
+            can_take = can_come;
         }
         // What leads where `wanted` looks is gained, and the rest is lost.
         let leads = |index: &&usize| self.changes[**index].is_gain() == wanted.is_above;
@@ -153,6 +163,9 @@ impl Resource {
         for &gain in &gains {
             let past = self.changes[gain].has_come(wanted.is_instant);
             let needed = losses.iter().map(|&loss| {
+                if self.changes[gain].is_release && loss + 1 == gain {
+                    return true;
+                }
                 let waits = self.changes[loss].has_come(wanted.is_instant).negated();
                 !times.fits(past, waits)
             });
@@ -177,8 +190,11 @@ impl Resource {
 
     /// The greatest or least level once these changes have come.
     fn level(&self, has_come: &[bool], is_greatest: bool) -> Option<Rational> {
-        let mut come = self.changes.iter().zip(has_come).filter(|(_, has_come)| **has_come);
-        come.try_fold(self.first, |level, (change, _)| level.checked_add(change.toward(is_greatest)))
+        let counts = |&(index, change): &(usize, &Change)| {
+            has_come[index] && (!change.is_release || has_come[index - 1])
+        };
+        let mut come = self.changes.iter().enumerate().filter(counts);
+        come.try_fold(self.first, |level, (_, change)| level.checked_add(change.toward(is_greatest)))
     }
 
     /// Whether a level once these changes have come is as all of these want it.

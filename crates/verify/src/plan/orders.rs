@@ -6,6 +6,7 @@ use tpn::{LabelId, Network, Ordering, Plan};
 
 use super::Checker;
 use crate::labels::{self, interval};
+use crate::uncertainty::natures_events;
 use crate::{Rule, Violation};
 
 /// The order of conflicts as the plan states it; each pair is accounted for by the rule that asks for it.
@@ -99,19 +100,21 @@ impl Stated {
 }
 
 impl Checker<'_> {
-    /// `before` of SPEC 5.3.
-    fn is_before(&self, first: LabelId, then: LabelId, stated: &Stated) -> bool {
+    /// `before` of SPEC 5.3. What the environment executes waits for no gap (SPEC 13.1): `natures` says which events it does.
+    fn is_before(&self, first: LabelId, then: LabelId, stated: &Stated, natures: &[bool]) -> bool {
         if stated.added.contains(&(first, then)) {
             return true;
         }
         let (first, then) = (interval(self.network, first), interval(self.network, then));
-        let least = if first.is_instant { self.gap } else { 0 };
+        let is_natures = natures.get(then.start.index()) == Some(&true);
+        let least = if first.is_instant && !is_natures { self.gap } else { 0 };
         self.entailment.is_at_least(first.end, then.start, least)
     }
 
     pub(super) fn check_conflicts(&self, stated: &mut Stated, violations: &mut Vec<Violation>) {
         let network = self.network;
         let selected = labels::selected(network, self.plan);
+        let natures = natures_events(network, &self.plan.selected_arcs);
         let mut complain = |message: String, (one, other): (LabelId, LabelId)| {
             let names = vec![network.label_name(one), network.label_name(other)];
             violations.push(Violation::new(Rule::Conflict, message).with_intervals(names));
@@ -125,14 +128,14 @@ impl Checker<'_> {
             }
             let (first, then) = match side {
                 Ok(Side::Reversed) => (other, one),
-                Ok(Side::Omitted) if self.is_before(other, one, stated) => (other, one),
+                Ok(Side::Omitted) if self.is_before(other, one, stated, &natures) => (other, one),
                 Ok(Side::InOrder | Side::Omitted) => (one, other),
                 Err(problem) => {
                     complain(problem, (one, other));
                     continue;
                 }
             };
-            if !self.is_before(first, then, stated) {
+            if !self.is_before(first, then, stated, &natures) {
                 let (first_name, then_name) = (network.label_name(first), network.label_name(then));
                 complain(
                     format!("{first_name} must come before {then_name}, but may overlap it"),
