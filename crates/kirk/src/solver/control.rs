@@ -368,33 +368,43 @@ impl InForce {
 }
 
 /// What happens before what in a solution, where both come at one time.
-struct HappensBefore {
-    after: TiVec<NodeId, Vec<NodeId>>,
-    /// By event, all that happens after it: of those that were asked for.
-    found: BTreeMap<NodeId, BTreeSet<NodeId>>,
+struct HappensBefore<'a> {
+    problem: &'a Problem<'a>,
+    solver: &'a Solver,
+    /// By event, what happens right after it; once it was asked for.
+    after: Option<TiVec<NodeId, Vec<NodeId>>>,
+    /// By event, whether each other one happens after it: of those that were asked for.
+    found: BTreeMap<NodeId, TiVec<NodeId, bool>>,
 }
 
-impl HappensBefore {
-    fn new(problem: &Problem<'_>, solver: &Solver) -> Self {
-        let mut after: TiVec<NodeId, Vec<NodeId>> = vec![Vec::new(); problem.model.num_nodes].into();
-        for Before { first, then, .. } in problem.happens_before(solver) {
-            after[first].push(then);
-        }
-        Self { after, found: BTreeMap::new() }
+impl<'a> HappensBefore<'a> {
+    const fn new(problem: &'a Problem<'a>, solver: &'a Solver) -> Self {
+        Self { problem, solver, after: None, found: BTreeMap::new() }
     }
 
     /// Whether an event happens before another one, or is it.
     fn is_before(&mut self, first: NodeId, then: NodeId) -> bool {
-        let after = &self.after;
-        let found = self.found.entry(first).or_insert_with(|| {
-            let mut found = BTreeSet::from([first]);
+        let Self { problem, solver, after, found } = self;
+        let nodes = problem.model.num_nodes;
+        let after = after.get_or_insert_with(|| {
+            let mut after: TiVec<NodeId, Vec<NodeId>> = vec![Vec::new(); nodes].into();
+            for Before { first, then, .. } in problem.happens_before(solver) {
+                after[first].push(then);
+            }
+            after
+        });
+        let found = found.entry(first).or_insert_with(|| {
+            let mut found: TiVec<NodeId, bool> = vec![false; nodes].into();
+            found[first] = true;
             let mut open = vec![first];
             while let Some(node) = open.pop() {
-                open.extend(after[node].iter().copied().filter(|&next| found.insert(next)));
+                open.extend(
+                    after[node].iter().copied().filter(|&next| !std::mem::replace(&mut found[next], true)),
+                );
             }
             found
         });
-        found.contains(&then)
+        found[then]
     }
 }
 
@@ -409,7 +419,7 @@ fn is_before(stn: &mut Stn, in_force: &InForce, first: Variable, then: &[Variabl
 /// Uses that some schedule has at one time, and that are too much together, if there are any.
 #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
 fn unordered(
-    (stn, happens): (&mut Stn, &mut HappensBefore),
+    (stn, happens): (&mut Stn, &mut HappensBefore<'_>),
     in_force: &InForce,
     at: impl Fn(Variable) -> i64,
     (tasks, capacity): (&[Task], i64),
@@ -460,7 +470,7 @@ struct Excess {
 /// The first excess.
 #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
 fn out_of_range(
-    (stn, happens): (&mut Stn, &mut HappensBefore),
+    (stn, happens): (&mut Stn, &mut HappensBefore<'_>),
     in_force: &InForce,
     tasks: &[Task],
     (least, greatest): (i64, i64),
@@ -476,7 +486,7 @@ fn out_of_range(
     }
     // Two that always come at one time are in order only if one happens before the other (SPEC 10.4).
     let moment = |task: usize| tasks[task].moment_node();
-    let is_first = |happens: &mut HappensBefore, first: usize, then: usize| {
+    let is_first = |happens: &mut HappensBefore<'_>, first: usize, then: usize| {
         order[first][then] && (!order[then][first] || happens.is_before(moment(first), moment(then)))
     };
     let held: Vec<(Task, usize, Vec<bool>)> = (tasks.iter().enumerate())
