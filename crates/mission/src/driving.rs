@@ -9,6 +9,7 @@ use std::sync::Arc;
 use exact::Time;
 use motion::{Formation, Path};
 use nalgebra::{Point2, distance};
+use snapshot::standing::Start;
 use snapshot::{Keyframe, VehicleMotion};
 use terrain::ConfigurationSpace;
 use tpn::OccurrenceId;
@@ -43,17 +44,28 @@ pub(crate) fn all_tracks(drives: &[Drive]) -> Vec<Vec<Vec<Place>>> {
     drives.iter().enumerate().map(|(index, drive)| tracks(drive, &drives[..index])).collect()
 }
 
-/// The motions of all vehicles that move, in the order of the vehicles, by [`all_tracks`] of the drives.
-pub(crate) fn motions(drives: &[Drive], all_tracks: &[Vec<Vec<Place>>]) -> Vec<VehicleMotion> {
+/// The motions of all vehicles that move, in the order of the vehicles, by [`all_tracks`] of the drives. `starts` says where each
+/// vehicle is at first.
+pub(crate) fn motions(
+    drives: &[Drive],
+    all_tracks: &[Vec<Vec<Place>>],
+    starts: &[Option<Start>],
+) -> Vec<VehicleMotion> {
     let mut motions: BTreeMap<u32, Vec<Keyframe>> = BTreeMap::new();
     for (drive, tracks) in drives.iter().zip(all_tracks) {
-        for (vehicle, track) in drive.vehicles.iter().zip(tracks) {
+        for (index, (vehicle, track)) in drive.vehicles.iter().zip(tracks).enumerate() {
             let frames = motions.entry(*vehicle).or_default();
+            // A follower is at its place in the formation before it first drives, unless it alone is somewhere else.
+            let at_first = || {
+                let start = starts.get(*vehicle as usize).copied().flatten();
+                start.filter(|start| index > 0 && !start.is_shared).map(|start| start.place_m)
+            };
             // A vehicle that comes from elsewhere joins the formation on the way.
-            let joins = frames.last().filter(|last| {
-                track.first().is_some_and(|first| distance(&last.position_m, &first.position_m) > EVEN_M)
-            });
-            let from = joins.map(|last| last.position_m);
+            let from = frames.last().map_or_else(at_first, |last| Some(last.position_m));
+            let is_elsewhere = |place: &Point2<f64>| {
+                track.first().is_some_and(|first| distance(place, &first.position_m) > EVEN_M)
+            };
+            let from = from.filter(is_elsewhere);
             frames.extend(keyframes(track, from, drive.start, drive.end));
         }
     }
@@ -226,7 +238,7 @@ mod tests {
     }
 
     fn motions_of(drives: &[Drive]) -> Vec<VehicleMotion> {
-        motions(drives, &all_tracks(drives))
+        motions(drives, &all_tracks(drives), &[])
     }
 
     fn first() -> Drive {

@@ -1025,7 +1025,8 @@ pub(crate) fn conclude(
     }
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let tracks = driving::all_tracks(&drives);
-    let motions = with_parked(driving::motions(&drives, &tracks), problem);
+    let starts = standing::starts(problem.program, &network.occurrences);
+    let motions = with_parked(driving::motions(&drives, &tracks, &starts), problem);
     let plan = outcome.plans.first();
     let meetings =
         plan.map(|plan| separation::meetings((&drives, tracks), &motions, problem.program, &network, plan));
@@ -1095,7 +1096,8 @@ pub fn motions_of(
             drive(&program.world, network, plan, route, snapshot::joined(&traverse.legs), space)
         })
         .collect();
-    driving::motions(&drives, &driving::all_tracks(&drives))
+    let starts = standing::starts(program, &network.occurrences);
+    driving::motions(&drives, &driving::all_tracks(&drives), &starts)
 }
 
 /// Room between the centers of vehicles that drive together, in meters.

@@ -106,6 +106,19 @@ fn a_formation_whose_vehicles_are_apart_does_not_set_out() {
     assert_eq!(executed("Drive(F, A); delay;").ending, executive::Ending::Finished);
 }
 
+/// A follower that alone is somewhere else is drawn there, until its formation sets out.
+#[test]
+fn a_follower_is_where_it_starts_until_its_formation_sets_out() {
+    let source = "location A (0, 0); location B (40, 10); location C (60, 0); vehicle L : ATRV at A; vehicle F : ATRV at B;
+         primitive Wait()[5,5]; primitive Convoy(to)[1,90] moves L, F; scenario S[0,100] = { Wait(); Convoy(C) }";
+    let planned = Mission::read(source).with_plan((Options::default(), 0), |_, planned, _, _| planned);
+    let place = |time: f64| {
+        let of_follower = planned.motions.iter().find(|it| it.vehicle == 1);
+        of_follower.and_then(|it| it.at(time)).expect("it is there").0
+    };
+    assert_eq!([place(0.0), place(5.0)], [Point2::new(40.0, 10.0); 2]);
+}
+
 /// Vehicles of a formation that the plan does not move are obstacles for others.
 #[test]
 fn a_formation_that_does_not_set_out_is_in_the_way() {
