@@ -167,7 +167,7 @@ impl WebKitOnDisk {
 
 /// The inspector of the only page, and what it calls that page.
 fn connect(port: u16) -> Result<(Connection, String)> {
-    // Whoever asks for a page that is not there yet ends the browser.
+    // The browser crashes if it is asked for a page that does not exist yet.
     let mut list = TcpStream::connect(("127.0.0.1", port))?;
     list.set_read_timeout(Some(PAUSE * 20))?;
     write!(list, "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")?;
@@ -184,7 +184,7 @@ fn connect(port: u16) -> Result<(Connection, String)> {
     }
 }
 
-/// What the inspector calls the page from this event on, if it says so.
+/// The name of the page for the inspector after this event, if the event changes it.
 fn target(event: &Event) -> Option<&str> {
     let info = &event.params["targetInfo"];
     match event.method.as_str() {
