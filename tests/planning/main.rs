@@ -22,4 +22,5 @@ mod rmpl_text;
 mod search_trees;
 mod shared_resources;
 mod uncertain;
+mod uncertain_resources;
 mod wishes;

@@ -135,7 +135,7 @@ fn compare(
 }
 
 /// Leaves half of the durations that can differ to the environment. How many they are.
-fn leave_to_nature(network: &mut Network, seed: u64) -> usize {
+pub fn leave_to_nature(network: &mut Network, seed: u64) -> usize {
     let mut natures = 0;
     for (id, arc) in (0_u64..).zip(&mut network.arcs) {
         let is_duration = matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Delay);
@@ -192,7 +192,37 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
         .iter()
         .map(|&(decision, alternative)| Choice { decision: DecisionId(decision), alternative })
         .collect();
-    let (_, selected_arcs) = closure(network, &choices);
+    let mut before: Vec<(NodeId, NodeId)> = Vec::new();
+    for &(ask, tell) in links {
+        let (asked, told) = (network.interval(LabelId(ask)), network.interval(LabelId(tell)));
+        if network.is_lasting(LabelId(ask)) {
+            before.push((network.ready(LabelId(tell)), asked.0));
+        } else {
+            before.extend([(told.0, asked.0), (asked.1, told.1)]);
+        }
+    }
+    for &(first, then) in order {
+        let (first, then) = (LabelId(first), LabelId(then));
+        before.push((network.interval(first).1, network.interval(then).0));
+        if !network.is_lasting(first) {
+            continue;
+        }
+        // What would break a requirement is on the side of what it rests on.
+        for &(ask, tell) in links {
+            let (ask, tell) = (LabelId(ask), LabelId(tell));
+            if tell == first && network.conflict(ask, then) {
+                before.push((network.interval(ask).1, network.interval(then).0));
+            } else if tell == then && network.conflict(ask, first) {
+                before.push((network.interval(first).1, network.ready(tell)));
+            }
+        }
+    }
+    is_controllable_with(network, &choices, &before)
+}
+
+/// Whether the arcs that `choices` select, with an order of events, are controllable as the mission asks for.
+pub fn is_controllable_with(network: &Network, choices: &[Choice], before: &[(NodeId, NodeId)]) -> bool {
+    let (_, selected_arcs) = closure(network, choices);
     let mut uncertain = stnu::Network::new(network.nodes.len());
     // What is tied to an event of the environment's counts as the environment's.
     let mut same: Vec<usize> = (0..network.nodes.len()).collect();
@@ -227,33 +257,8 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
             }
         }
     }
-    let mut before = |earlier: NodeId, later: NodeId| {
+    for &(earlier, later) in before {
         uncertain.add_edge(point(later), point(earlier), 0);
-    };
-    for &(ask, tell) in links {
-        let (asked, told) = (network.interval(LabelId(ask)), network.interval(LabelId(tell)));
-        if network.is_lasting(LabelId(ask)) {
-            before(network.ready(LabelId(tell)), asked.0);
-        } else {
-            before(told.0, asked.0);
-            before(asked.1, told.1);
-        }
-    }
-    for &(first, then) in order {
-        let (first, then) = (LabelId(first), LabelId(then));
-        before(network.interval(first).1, network.interval(then).0);
-        if !network.is_lasting(first) {
-            continue;
-        }
-        // What would break a requirement is on the side of what it rests on.
-        for &(ask, tell) in links {
-            let (ask, tell) = (LabelId(ask), LabelId(tell));
-            if tell == first && network.conflict(ask, then) {
-                before(network.interval(ask).1, network.interval(then).0);
-            } else if tell == then && network.conflict(ask, first) {
-                before(network.interval(first).1, network.ready(tell));
-            }
-        }
     }
     if network.controllability == Controllability::Strong {
         return matches!(stnu::check_strong(&uncertain), Ok(StrongVerdict::Controllable(_)));
