@@ -34,6 +34,8 @@ pub struct Drive {
 
 /// Times are rounded to this fraction of a unit: positions between keyframes are interpolated anyway.
 const PARTS_PER_UNIT: u32 = 1000;
+/// A vehicle sets out for a traverse from where it stands, if that is at most this far from where its way starts, in meters.
+const SETS_OUT_WITHIN_M: f64 = 20.0;
 /// Followers are placed this often along the leader's path, in meters.
 const FOLLOWER_STEP_M: f64 = 0.4;
 /// A place is left out where driving evenly past it comes this near to it, in meters.
@@ -54,22 +56,35 @@ pub(crate) fn motions(
     let mut motions: BTreeMap<u32, Vec<Keyframe>> = BTreeMap::new();
     for (drive, tracks) in drives.iter().zip(all_tracks) {
         for (index, (vehicle, track)) in drive.vehicles.iter().zip(tracks).enumerate() {
+            let Some(first) = track.first() else { continue };
+            let start = starts.get(*vehicle as usize).copied().flatten();
             let frames = motions.entry(*vehicle).or_default();
-            // A follower is at its place in the formation before it first drives, unless it alone is somewhere else.
-            let at_first = || {
-                let start = starts.get(*vehicle as usize).copied().flatten();
-                start.filter(|start| index > 0 && !start.is_shared).map(|start| start.place_m)
-            };
+            let place_m = frames
+                .last()
+                .map_or_else(|| place_before(drive, index, first.position_m, start), |last| last.position_m);
             // A vehicle that comes from elsewhere joins the formation on the way.
-            let from = frames.last().map_or_else(at_first, |last| Some(last.position_m));
-            let is_elsewhere = |place: &Point2<f64>| {
-                track.first().is_some_and(|first| distance(place, &first.position_m) > EVEN_M)
-            };
-            let from = from.filter(is_elsewhere);
+            let from = Some(place_m).filter(|place_m| distance(place_m, &first.position_m) > EVEN_M);
             frames.extend(keyframes(track, from, drive.start, drive.end));
         }
     }
     motions.into_iter().map(|(vehicle, keyframes)| VehicleMotion { vehicle, keyframes }).collect()
+}
+
+/// How far from the start of its way a vehicle may be when a traverse starts, in meters: followers find their places.
+pub(crate) fn sets_out_within_m(drive: &Drive, index: usize) -> f64 {
+    SETS_OUT_WITHIN_M + index as f64 * drive.spacing_m
+}
+
+/// Where a vehicle is before its first drive: in its place of that drive's formation, unless it starts too far from there.
+pub(crate) fn place_before(
+    drive: &Drive,
+    index: usize,
+    in_formation_m: Point2<f64>,
+    start: Option<Start>,
+) -> Point2<f64> {
+    let away =
+        start.filter(|start| distance(&start.place_m, &in_formation_m) > sets_out_within_m(drive, index));
+    away.map_or(in_formation_m, |start| start.place_m)
 }
 
 /// A place on the way of a vehicle, and which share of its time has then gone by.

@@ -18,6 +18,7 @@ use rmpl::Diagnostic;
 use rmpl::program::{self, Change, Measure, Program, World};
 use snapshot::blocked::name_blocked;
 use snapshot::standing;
+use snapshot::standing::Start;
 use snapshot::{
     Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
 };
@@ -1026,7 +1027,7 @@ pub(crate) fn conclude(
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let tracks = driving::all_tracks(&drives);
     let starts = standing::starts(problem.program, &network.occurrences);
-    let motions = with_parked(driving::motions(&drives, &tracks, &starts), problem);
+    let motions = with_parked(driving::motions(&drives, &tracks, &starts), &starts, problem);
     let plan = outcome.plans.first();
     let meetings =
         plan.map(|plan| separation::meetings((&drives, tracks), &motions, problem.program, &network, plan));
@@ -1062,16 +1063,18 @@ pub(crate) fn conclude(
 }
 
 /// Where the vehicles are that move, and where those stay that do not: others have to keep apart from these as well.
-fn with_parked(mut motions: Vec<VehicleMotion>, problem: &Problem<'_>) -> Vec<VehicleMotion> {
-    let program = problem.program;
+fn with_parked(
+    mut motions: Vec<VehicleMotion>,
+    starts: &[Option<Start>],
+    problem: &Problem<'_>,
+) -> Vec<VehicleMotion> {
     if motions.is_empty() {
         return motions;
     }
-    let starts = standing::starts(program, &problem.network.occurrences);
     let moved = motions.iter().map(|motion| motion.vehicle);
     let elsewhere: BTreeSet<u32> = moved.chain(places(problem).iter().map(|it| it.vehicle)).collect();
     for (vehicle, start) in (0..).zip(starts) {
-        let Some(start) = start.filter(|_| !elsewhere.contains(&vehicle)) else { continue };
+        let Some(start) = start.as_ref().filter(|_| !elsewhere.contains(&vehicle)) else { continue };
         let frame = Keyframe { time: Time::ZERO, position_m: start.place_m, heading_rad: 0.0 };
         motions.push(VehicleMotion { vehicle, keyframes: vec![frame] });
     }

@@ -224,10 +224,8 @@ fn parts(
         for (index, (&vehicle, mut track)) in drive.vehicles.iter().zip(tracks).enumerate() {
             let Some(first) = track.first().map(|place| place.position_m) else { continue };
             let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
-                let own = starts.get(vehicle as usize).copied().flatten();
-                // A follower is at its place in the formation before it first drives.
-                let own = own.filter(|start| index == 0 || !start.is_shared);
-                (network.start, own.map_or(first, |start| start.place_m))
+                let start = starts.get(vehicle as usize).copied().flatten();
+                (network.start, driving::place_before(drive, index, first, start))
             });
             if distance(&stands_m, &first) > driving::EVEN_M {
                 track = driving::joined_from(&track, stands_m);

@@ -165,19 +165,12 @@ const MIN_ROCK_M: f64 = 0.4;
 const TICKS_PER_SECOND: u32 = 10;
 /// Within this distance of a location a vehicle is at it, in meters: it may stop a little before its path ends.
 const AT_GOAL_M: f64 = 0.5;
-/// A vehicle sets out for a traverse from where it stands, if that is at most this far from where its way starts, in meters.
-const SETS_OUT_WITHIN_M: f64 = 20.0;
 /// Where a vehicle stands first, no rock comes nearer to its body than this, in meters.
 const STARTING_ROOM_M: f64 = 0.1;
 /// Meters driven are whole multiples of this fraction of a meter.
 const PARTS_PER_METER: u32 = 1000;
 /// How often traverses are driven again, at most, so that vehicles that were driven one after the other see each other.
 const MAX_AGAIN: usize = 6;
-
-/// How far from the start of its way a vehicle may be when a traverse starts, in meters: followers find their places.
-fn sets_out_within_m(drive: &Drive, index: usize) -> f64 {
-    SETS_OUT_WITHIN_M + index as f64 * drive.spacing_m
-}
 
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
@@ -260,18 +253,17 @@ impl<'run> Driving<'run> {
         lanes.into_iter().map(lane).collect()
     }
 
-    /// Where a vehicle is that has not driven yet: where its first drive starts, in its place of the formation.
+    /// Where a vehicle is that has not driven yet.
     fn start_m(&self, vehicle: u32, start: Start) -> Point2<f64> {
         let courses = self.courses.borrow();
         let drives = courses.known.values().map(|course| &course.drive);
         let first = drives.filter(|drive| drive.vehicles.contains(&vehicle)).min_by_key(|drive| drive.start);
-        let in_formation_m = first.and_then(|drive| {
+        let place_m = first.and_then(|drive| {
             let index = drive.vehicles.iter().position(|&it| it == vehicle)?;
             let track = driving::tracks_m(drive).into_iter().nth(index)?;
-            let &place_m = track.points_m.first()?;
-            (distance(&place_m, &start.place_m) <= sets_out_within_m(drive, index)).then_some(place_m)
+            Some(driving::place_before(drive, index, *track.points_m.first()?, Some(start)))
         });
-        in_formation_m.unwrap_or(start.place_m)
+        place_m.unwrap_or(start.place_m)
     }
 
     /// Drives a traverse from its start to its end, or until it gives up.

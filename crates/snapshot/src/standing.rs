@@ -121,8 +121,6 @@ pub struct Start {
     pub place_m: Point2<f64>,
     /// The number of its place at the location: see [`start_slots`].
     pub slot: usize,
-    /// Whether others share its place, so that its formation says where it stands if it moves in it.
-    pub is_shared: bool,
 }
 
 /// Where each vehicle stands before it first moves; `None` if its start is not declared.
@@ -139,17 +137,13 @@ pub fn starts(program: &Program, occurrences: &[Occurrence]) -> Vec<Option<Start
         (declared.start.text.as_str(), slot, vehicle::flies(world, vehicle as u32))
     });
     let keys: Vec<(&str, usize, bool)> = keys.collect();
-    let mut counts: BTreeMap<(&str, usize, bool), usize> = BTreeMap::new();
-    for &key in &keys {
-        *counts.entry(key).or_default() += 1;
-    }
     let mut before: BTreeMap<(&str, usize, bool), usize> = BTreeMap::new();
     let starts = keys.into_iter().map(|key| {
         let (location, slot, flies) = key;
         let (spacing_m, room_m) = (spacings_m[usize::from(flies)], rooms_m[usize::from(flies)]);
         let before = before.entry(key).or_default();
         let middle_m = place_m(*locations.get(location)?, slot, spacing_m);
-        let start = Start { place_m: place_m(middle_m, *before, room_m), slot, is_shared: counts[&key] > 1 };
+        let start = Start { place_m: place_m(middle_m, *before, room_m), slot };
         *before += 1;
         Some(start)
     });

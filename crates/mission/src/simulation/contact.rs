@@ -111,14 +111,11 @@ fn contact(
 
 /// Where each vehicle is over time, in mission units.
 fn tracks(program: &Program, network: &Network, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
+    let all = || drives.iter().flat_map(|drive| &drive.vehicles);
     let starts =
         standing::starts(program, &network.occurrences).into_iter().zip(0..).map(|(start, vehicle)| {
-            let start = start?;
-            // A follower is at its place in the formation before it first drives.
-            let first = drives.iter().flat_map(|drive| drive.vehicles.iter().enumerate());
-            let mut first = first.filter(|(_, it)| start.is_shared && it.vehicle == vehicle);
-            let frame = first.next().filter(|(index, _)| *index > 0).and_then(|(_, it)| it.frames.first());
-            let position_m = frame.map_or(start.place_m, |frame| frame.position_m);
+            let first = all().find(|it| it.vehicle == vehicle).and_then(|it| it.frames.first());
+            let position_m = first.map_or(start?.place_m, |first| first.position_m);
             Some(TimedPoint { time_s: 0.0, position_m })
         });
     let mut tracks: Vec<Vec<TimedPoint>> = starts.map(|start| start.into_iter().collect()).collect();

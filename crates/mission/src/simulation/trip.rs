@@ -19,7 +19,8 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 
 use super::seen::{SeenMap, is_blocked};
 use super::way::{gets_past, nearest_free, rest_of, until};
-use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle, sets_out_within_m};
+use super::{Before, Course, DriveFrame, Driving, Lane, SimulatedVehicle};
+use crate::driving;
 
 /// Frames are kept this far apart, in meters and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -222,7 +223,7 @@ impl<'a> Trip<'a> {
                 let place = driving.standing_m(&before.stand).find(|(other, _)| other == vehicle);
                 if let (Some((_, place)), Some(first)) = (place, points.first_mut()) {
                     let away_m = distance(&place, first);
-                    if away_m > sets_out_within_m(drive, index) {
+                    if away_m > driving::sets_out_within_m(drive, index) {
                         let name = declared(*vehicle).map_or("?", |it| it.name.text.as_str());
                         scattered = Some(format!("{name} is {away_m:.0} m from where it is to set out"));
                     }
