@@ -10,7 +10,7 @@ use crate::contents::Contents;
 use crate::drawing::NetworkDrawing;
 use crate::folding::Fold;
 use crate::metrics::{EVENT_RADIUS, MARGIN, OUTLINE_PAD, SHORTEST_RUN, VERTEX_RADIUS};
-use crate::options::{Detail, Finer, Options};
+use crate::options::{Detail, Finer, Options, Written};
 use crate::size::Sizes;
 use crate::text::ArcTexts;
 use crate::tree::Tree;
@@ -34,6 +34,9 @@ const MIN_ZOOM: f64 = 0.8;
 /// Networks with so many events at most are small, and made so much smaller before anything is put behind a box.
 const SMALL: usize = 60;
 const SMALL_ZOOMS: [f64; 5] = [MIN_ZOOM, 0.65, 0.5, 0.42, 0.35];
+/// And less is written before that, and names are cut to so many points of the screen.
+const LONGEST_NAME: f64 = 88.0;
+const SHORTENED: [Written; 3] = [Written::Everything, Written::Short, Written::Names];
 /// And its texts are at least so large then, in points of the screen.
 pub const MIN_TEXT: f64 = 11.0;
 
@@ -52,8 +55,8 @@ const MIN_AREA: f64 = SHORTEST_RUN * 2.0 * VERTEX_RADIUS;
 
 /// Draws a network as [`crate::network`] does, with as much detail as fits into `room` at its designed size: as it is if
 /// that fits; otherwise with long sequences in rows; otherwise with less written, and so small that the texts still are
-/// at [`MIN_TEXT`]; otherwise with what is fine behind boxes, `focus` last of all. Of `options` what it says of rows
-/// and of the level of detail is not used.
+/// at [`MIN_TEXT`], small networks with as little as [`Written::Names`]; otherwise with what is fine behind boxes, `focus`
+/// last of all. Of `options` what it says of rows, of what is written and of the level of detail is not used.
 ///
 /// Takes time linear in the network once, and for each of a number of tries in what is drawn.
 pub fn fitted(
@@ -76,11 +79,13 @@ pub fn fitted(
     }
     // Of a small network nothing is behind boxes as long as what is written can be read.
     let is_small = focus.is_none() && network.nodes.len() <= SMALL;
-    for zoom in SMALL_ZOOMS.into_iter().filter(|_| is_small) {
-        let brief = options.brief(MIN_TEXT / zoom);
-        let fitter = Fitter::new(network, &contents, &brief, room, measure, zoom);
-        if let Some(found) = fitter.tried(&Detail::default()) {
-            return fitter.drawn(&found);
+    for written in SHORTENED {
+        for zoom in SMALL_ZOOMS.into_iter().filter(|_| is_small) {
+            let brief = options.brief(MIN_TEXT / zoom).shortened(written, LONGEST_NAME / zoom);
+            let fitter = Fitter::new(network, &contents, &brief, room, measure, zoom);
+            if let Some(found) = fitter.tried(&Detail::default()) {
+                return fitter.drawn(&found);
+            }
         }
     }
     let brief = options.brief(MIN_TEXT / MIN_ZOOM);

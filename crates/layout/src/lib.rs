@@ -41,7 +41,7 @@ pub use list::automaton::{AutomatonState, automaton_list};
 pub use list::network::{NetworkState, network_list};
 pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};
 pub use metrics::TextRole;
-pub use options::{Detail, Finer, Options};
+pub use options::{Detail, Finer, Options, Written};
 pub use overlay::{OverlayCurve, OverlayKind};
 pub use progress::Progress;
 pub use style::Parts;

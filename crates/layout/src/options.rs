@@ -21,6 +21,8 @@ pub struct Options {
     pub zero_bounds: bool,
     /// Whether arcs show what they change of states (`Set`) and what holds at first (`Init`).
     pub changes: bool,
+    /// How much is written at arcs.
+    pub written: Written,
     /// Conditions go on the line of the bounds up to this width, or that of the name above if it is wider.
     pub easy_line: f64,
     /// No text is smaller than this.
@@ -30,6 +32,17 @@ pub struct Options {
     /// Space kept under events and decisions for their time windows; wider windows are written smaller.
     /// Zero keeps none.
     pub window_width: f64,
+}
+
+/// How much is written at arcs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// What they are called, their bounds and their conditions.
+    Everything,
+    /// The same, of delays only the bounds.
+    Short,
+    /// What they are called, or else their bounds.
+    Names,
 }
 
 /// A level of detail: blocks and neighbors that hold no more steps of the program than this are one box.
@@ -67,6 +80,12 @@ impl Options {
             ..self.clone()
         }
     }
+
+    /// The same with names of at most `longest`, and with no more written than `written`.
+    pub(crate) fn shortened(&self, written: Written, longest: f64) -> Self {
+        let longest_name = if written == Written::Everything { self.longest_name } else { longest };
+        Self { written, longest_name, ..self.clone() }
+    }
 }
 
 impl Default for Options {
@@ -78,6 +97,7 @@ impl Default for Options {
             arguments: true,
             zero_bounds: true,
             changes: true,
+            written: Written::Everything,
             easy_line: 130.0,
             min_text: 0.0,
             longest_name: 260.0,

@@ -10,7 +10,7 @@ use tpn::{Arc, ArcId, ArcKind, BlockKind, Extent, Label, LabelId, Network, Occur
 
 use crate::drawing::Item;
 use crate::metrics::{TextRole, WORD_GAP, rounded_up};
-use crate::options::Options;
+use crate::options::{Options, Written};
 
 /// The least height of a line of text, as a part of the text's size.
 const LINE_HEIGHT: f64 = 1.15;
@@ -58,24 +58,28 @@ impl<'a> ArcTexts<'a> {
         let mut runs: Vec<Run> = Vec::new();
         let run = |text: SmolStr, role: TextRole, line: i32, owner: Item| {
             let size = options.text_size(role);
-            let width = width_at(&text, size, measure);
-            Run { text, role, size, width, line, owner }
+            let width_of = |text: &str| width_at(text, size, measure);
+            // A number that is cut is another number.
+            let is_number = matches!(role, TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds);
+            let longest = if is_number { f64::INFINITY } else { options.longest_name };
+            let text = display::cut_to_width(&text, longest, width_of);
+            Run { width: width_of(&text), text, role, size, line, owner }
         };
         let labels = || arc.labels.iter().copied().filter(|&label| is_written(network, options, label));
         let name = arc_name(network, options, id, arc);
-        if let Some((text, role)) = &name {
-            let text = cut_to_width(text, *role, options.longest_name, measure);
-            runs.push(run(text, *role, -1, Item::Arc(id)));
+        let with_bounds = options.written != Written::Names;
+        if let Some((text, role)) = name.clone() {
+            runs.push(run(text, role, -1, Item::Arc(id)));
         } else {
             runs.extend(labels().map(|label| {
                 let (text, role) = label_text(network, label);
                 run(text, role, -1, Item::Label(label))
             }));
         }
-        if let Some((text, role)) = bounds_text(arc, options) {
+        if let Some((text, role)) = bounds_text(arc, options).filter(|_| with_bounds || runs.is_empty()) {
             runs.push(run(text, role, if runs.is_empty() { -1 } else { 0 }, Item::Arc(id)));
         }
-        if name.is_some() {
+        if name.is_some() && with_bounds {
             let easy = runs[0].width.max(options.easy_line);
             for label in labels() {
                 let (text, role) = label_text(network, label);
@@ -183,7 +187,9 @@ fn bounds_text(arc: &Arc, options: &Options) -> Option<(SmolStr, TextRole)> {
     }
     // That something comes later, its arrow says.
     let is_free = arc.lower.is_zero() && arc.upper == Bound::Infinite && !arc.is_contingent;
-    if is_free && arc.occurrence.is_none() && !options.zero_bounds {
+    let is_plain =
+        arc.occurrence.is_none() || (arc.kind == ArcKind::Delay && options.written != Written::Everything);
+    if is_free && is_plain && !options.zero_bounds {
         return None;
     }
     Some((text, if arc.is_contingent { TextRole::Nature } else { TextRole::Bounds }))
@@ -203,7 +209,8 @@ fn arc_name(network: &Network, options: &Options, id: ArcId, arc: &Arc) -> Optio
     }
     match occurrence.kind {
         OccurrenceKind::Assertion | OccurrenceKind::Scope => None,
-        OccurrenceKind::Delay => Some((SmolStr::new_static("delay"), TextRole::Muted)),
+        OccurrenceKind::Delay => (options.written == Written::Everything)
+            .then_some((SmolStr::new_static("delay"), TextRole::Muted)),
         OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Scenario => {
             let text =
                 if options.arguments { activity_name(occurrence) } else { occurrence.activity.clone() };

@@ -79,7 +79,7 @@ const RING: (f64, f64) = (4.0, 9.0);
 /// The display list of a network. Linear in the drawing.
 pub fn network_list(drawing: &NetworkDrawing, network: &Network, state: &NetworkState<'_>) -> DisplayList {
     let mut list = DisplayList::new(drawing.bounds);
-    let builder = Builder { drawing, network, plan: state.plan, parts: state.parts };
+    let builder = Builder::new(drawing, network, state);
     let lanes = if state.parts.lanes { lanes(drawing, network) } else { Vec::new() };
     list.begin(Group { layer: layer::LANES, ..Group::default() });
     for lane in &lanes {
@@ -113,7 +113,8 @@ pub fn network_list(drawing: &NetworkDrawing, network: &Network, state: &Network
     }
     for block in drawing.blocks.iter().filter(|block| !block.title.is_empty()) {
         let text = heading(&block.title, block.rect, &approximate_text_width);
-        list.write(Text { plate: Some(ColorRole::Surface.faint(0.8)), ..text }).at(Detail::below(FAR_ZOOM));
+        list.write(Text { plate: Some(ColorRole::Surface.faint(0.8)), ..text })
+            .at(Detail::below(builder.zoom(FAR_ZOOM)));
     }
     list.begin(Group { layer: layer::TEXTS, ..Group::default() });
     let crossed = crossed_texts(drawing, state);
@@ -159,7 +160,7 @@ pub fn progress_list(
     progress: &Progress,
     area: Option<(Rect, f64)>,
 ) -> DisplayList {
-    let builder = Builder { drawing, network, plan: state.plan, parts: state.parts };
+    let builder = Builder::new(drawing, network, state);
     let mut list = DisplayList::new(drawing.bounds);
     list.begin(Group { layer: layer::ELAPSED, min_size: 2.0, ..Group::default() });
     for &(arc, fraction) in &progress.under_way {
@@ -193,8 +194,8 @@ pub fn progress_list(
             && progress.done.binary_search(&node).is_ok()
             && builder.parts.shows(builder.standing(node))
         {
-            let text = builder.text_of(text, Standing::Plain).colored(ColorRole::NodeFill);
-            list.write(text).at(Detail::from(FAR_ZOOM));
+            let marked = builder.text_of(text, Standing::Plain).colored(ColorRole::NodeFill);
+            list.write(marked).at(Detail::from(readable_from(text)));
         }
     });
     list
@@ -209,7 +210,7 @@ pub fn emphasis_list(
     emphases: &[Emphasis<'_>],
     chosen: &[&OverlayCurve],
 ) -> DisplayList {
-    let builder = Builder { drawing, network, plan: state.plan, parts: state.parts };
+    let builder = Builder::new(drawing, network, state);
     let mut list = DisplayList::new(drawing.bounds);
     list.begin(Group { layer: layer::EMPHASIS, min_size: 4.0, ..Group::default() });
     for emphasis in emphases {
@@ -259,8 +260,9 @@ pub fn emphasis_list(
         for text in drawing.texts.iter().filter(is_marked) {
             let standing = builder.standing_of(text.owner);
             if builder.parts.shows_text(text.role) && builder.parts.shows(standing) {
-                let text = builder.text_of(text, standing);
-                list.write(Text { plate: Some(plate.into()), ..text }).at(Detail::from(FAR_ZOOM));
+                let marked = builder.text_of(text, standing);
+                list.write(Text { plate: Some(plate.into()), ..marked })
+                    .at(Detail::from(readable_from(text)));
             }
         }
     }
@@ -307,14 +309,32 @@ fn lanes(drawing: &NetworkDrawing, network: &Network) -> Vec<Lane> {
     named.collect()
 }
 
+/// The zoom from which a text can be read.
+fn readable_from(text: &TextShape) -> f64 {
+    FAR_ZOOM * text.role.size() / text.size
+}
+
 struct Builder<'a> {
     drawing: &'a NetworkDrawing,
     network: &'a Network,
     plan: Option<&'a Plan>,
     parts: Parts,
+    /// By how much texts are larger than usual: a drawing in little room can be read at smaller zooms.
+    enlarged: f64,
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    fn new(drawing: &'a NetworkDrawing, network: &'a Network, state: &NetworkState<'a>) -> Self {
+        let sizes = drawing.texts.iter().map(|text| text.size / text.role.size());
+        let enlarged = sizes.fold(1.0, f64::max);
+        Self { drawing, network, plan: state.plan, parts: state.parts, enlarged }
+    }
+
+    /// Where texts are as small on the screen as usual ones are at this zoom.
+    fn zoom(&self, usual: f64) -> f64 {
+        usual / self.enlarged
+    }
+
     fn standing(&self, node: NodeId) -> Standing {
         style::node_standing(self.plan, node)
     }
@@ -330,7 +350,7 @@ impl Builder<'_> {
         // From afar, outlines tell more than areas do.
         let outlined = match (is_shown, fill, block.form) {
             (true, None, _) => Detail::ALWAYS,
-            (false, _, BlockForm::Activity) => Detail::below(FAR_ZOOM),
+            (false, _, BlockForm::Activity) => Detail::below(self.zoom(FAR_ZOOM)),
             _ => Detail::below(OVERVIEW_ZOOM),
         };
         let target = block.block.map(|block| block.0);
@@ -404,7 +424,7 @@ impl Builder<'_> {
             return;
         }
         let is_name = text.role == TextRole::Name && text.slide.is_none();
-        let detail = Detail::from(if is_name { CROWDED_ZOOM } else { FAR_ZOOM });
+        let detail = Detail::from(if is_name { self.zoom(CROWDED_ZOOM) } else { readable_from(text) });
         let (kind, id) = match text.owner {
             Item::Node(node) => (TargetKind::Node, node.0),
             Item::Label(label) => (TargetKind::Label, label.0),

@@ -95,6 +95,24 @@ fn nothing_of_a_small_mission_is_behind_a_box() {
 }
 
 #[test]
+fn the_first_mission_is_drawn_whole_in_the_panels_of_small_windows() {
+    let network = network_of(include_str!("../../../../assets/missions/both-paths.rmpl"));
+    let options = Options { window_width: 0.0, ..Options::default() };
+    // What windows of 1280 by 713 and of 1024 by 768 points leave to the network, and less.
+    for (width, height) in [(515.0, 280.0), (640.0, 205.0), (400.0, 250.0)] {
+        let drawing = fitted(&network, &options, None, Room { width, height }, &approximate_text_width);
+        let what = format!("{width} by {height}");
+        assert!(boxes(&drawing).is_empty(), "{what}");
+        assert_nothing_overlaps(&drawing, &what);
+        let numbers = drawing.texts.iter().filter(|it| it.role == layout::TextRole::Bounds);
+        assert!(numbers.clone().count() > 3, "{what}: too little is written");
+        for number in numbers {
+            assert!(!number.text.contains('…'), "{what}: {} is another number", number.text);
+        }
+    }
+}
+
+#[test]
 fn what_fits_is_drawn_whole_and_unbroken() {
     let network = network_of("primitive A()[1,5];\nscenario Short = { A(); A() }\n");
     assert_eq!(

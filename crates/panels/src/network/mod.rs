@@ -37,6 +37,7 @@ use self::data::{Drawn, block_key, fits, is_collapsible};
 use self::detail::Detail;
 use self::highlight::{Highlight, selection_of};
 use self::landmarks::Act;
+use self::minimap::Overview;
 use self::paint::{Scene, badge};
 use self::search::Search;
 use self::toolbar::Asked;
@@ -58,8 +59,7 @@ pub struct NetworkPanel {
     followed_step: Option<usize>,
     /// What this panel last said the pointer is over.
     told_hover: Selection,
-    /// Whether the overview is being dragged.
-    is_dragging_overview: bool,
+    overview: Overview,
 }
 
 /// How far from the pointer something may be to be pointed at, in points.
@@ -209,7 +209,13 @@ impl NetworkPanel {
 
         self.show_connector(ui, context, panel, network);
         let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, (context, commands));
-        let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
+        // It does not jump about while the drawing moves.
+        let is_moved =
+            |input: &InputState| input.pointer.any_down() || input.smooth_scroll_delta() != vec2(0.0, 0.0);
+        if options.minimap && !ui.input(is_moved) {
+            self.overview.follow(panel, &self.view, &self.drawn);
+        }
+        let overview = self.overview.place(panel, &self.view, &self.drawn).filter(|_| options.minimap);
         let pointer =
             pointer_over(ui, &response).filter(|at| overview.is_none_or(|overview| !overview.contains(*at)));
         let pointed = pointer.and_then(|at| self.pointed(panel, at, network, plan, options));
@@ -307,22 +313,24 @@ impl NetworkPanel {
         response: &Response,
         (snapshot, network): (&Snapshot, &Network),
     ) {
-        let overview = minimap::place(panel, &self.view, &self.drawn)
+        let overview = self
+            .overview
+            .place(panel, &self.view, &self.drawn)
             .filter(|_| context.state.settings.views.network.minimap);
         let pointer = response.interact_pointer_pos();
         // Two fingers move and zoom; one of them alone would drag as well.
         let touch = ui.input(InputState::multi_touch).filter(|touch| panel.contains(touch.start_pos));
         if let Some(touch) = touch {
-            self.is_dragging_overview = false;
+            self.overview.is_dragged = false;
             self.view.pan(touch.translation_delta);
             self.view.zoom_at(panel, touch.center_pos, f64::from(touch.zoom_delta));
             return;
         }
         if response.drag_started() || response.clicked() {
             let is_over = |place: &Rect| pointer.is_some_and(|at| place.contains(at));
-            self.is_dragging_overview = overview.as_ref().is_some_and(is_over);
+            self.overview.is_dragged = overview.as_ref().is_some_and(is_over);
         }
-        if let (true, Some(place), Some(at)) = (self.is_dragging_overview, overview, pointer) {
+        if let (true, Some(place), Some(at)) = (self.overview.is_dragged, overview, pointer) {
             self.view.look_at(minimap::point_at(place, &self.drawn, at));
         } else if carry::carried(ui.ctx()).is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -331,7 +339,7 @@ impl NetworkPanel {
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
         if response.drag_stopped() {
-            self.is_dragging_overview = false;
+            self.overview.is_dragged = false;
         }
         if let Some(at) = pointer_over(ui, response) {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta()));
@@ -526,9 +534,9 @@ impl NetworkPanel {
         network: &Network,
         commands: &mut CommandSender,
     ) {
-        if response.double_clicked() && !self.is_dragging_overview {
+        if response.double_clicked() && !self.overview.is_dragged {
             self.toggle_block_under(response.interact_pointer_pos(), panel, network);
-        } else if response.clicked() && !self.is_dragging_overview {
+        } else if response.clicked() && !self.overview.is_dragged {
             response.request_focus();
             let selection = pointed.map(|pointed| pointed.selection().clone()).unwrap_or_default();
             self.followed_selection = selection.clone();
