@@ -77,7 +77,7 @@ struct Event {
     change: i64,
 }
 
-fn whole(amount: Rational) -> i64 {
+fn units(amount: Rational) -> i64 {
     assert!(amount.is_integer(), "the missions have whole amounts");
     amount.floor()
 }
@@ -113,13 +113,13 @@ impl Level {
             .iter()
             .map(|resource| {
                 let (least, greatest) = match resource.supply {
-                    Supply::Reusable { capacity } => (0, whole(capacity)),
-                    Supply::Reservoir { least, greatest, .. } => (whole(least), whole(greatest)),
+                    Supply::Reusable { capacity } => (0, units(capacity)),
+                    Supply::Reservoir { least, greatest, .. } => (units(least), units(greatest)),
                 };
                 let is_reusable = matches!(resource.supply, Supply::Reusable { .. });
                 Self {
                     is_reusable,
-                    initial: whole(resource.supply.initial_level()),
+                    initial: units(resource.supply.initial_level()),
                     least,
                     greatest,
                     events: Vec::new(),
@@ -128,11 +128,11 @@ impl Level {
             })
             .collect();
         for it in &network.uses {
-            let amount = whole(it.amount);
+            let amount = units(it.amount);
             let level = &mut levels[it.resource.index()];
             if let Some(LevelCondition { order, bound }) = it.level {
                 assert!(!order.is_strict(), "the missions have no strict conditions");
-                let (is_minimum, bound) = (order.is_minimum(), whole(bound));
+                let (is_minimum, bound) = (order.is_minimum(), units(bound));
                 level.conditions.push(Condition { start: it.start, end: it.end, is_minimum, bound });
                 continue;
             }
