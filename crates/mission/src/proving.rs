@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use review::MissionRule;
-use review::flight_rule::proof::{Effort, Mission, Proven, prove};
+use review::flight_rule::proof::{self, Effort, Mission, Proven, prove};
 use snapshot::vehicle;
 use tpn::{Network, Plan};
 
@@ -29,9 +29,13 @@ pub(crate) fn prove_rule(
     let is_moving = |occurrence| vehicle::moving(problem.program, occurrence).is_some();
     let needs_paths = problem.ground.is_some() && problem.network.occurrences.iter().any(is_moving);
     // What is known of movements without paths bounds them from below, so that no plan that can be driven is missed.
+    let mut follow_from_choices = true;
     let network: Cow<'_, Network> = if needs_paths {
         let mut network = problem.network.as_ref().clone();
-        network.departures = Departures::new(&problem, grounds).bounds();
+        let departures = Departures::new(&problem, grounds);
+        // The order of movements decides where vehicles come from, and which of two that meet stands where.
+        follow_from_choices = !kirk::has_open_order(&network) && !departures.are_open();
+        network.departures = departures.bounds();
         let network = Arc::new(network);
         let relaxed = planning::without_upper_limits(&network, &BTreeMap::new());
         Cow::Owned(Arc::unwrap_or_clone(relaxed.unwrap_or(network)))
@@ -50,6 +54,6 @@ pub(crate) fn prove_rule(
         network: &network,
         plan: planned.planning.outcome.plans.first().map(|plan| (&*planned.network, plan)),
     };
-    let with_paths = needs_paths.then_some(&mut with_paths as &mut review::flight_rule::proof::WithPaths<'_>);
-    prove(mission, rule, Effort { alternatives, stop, with_paths })
+    let paths = needs_paths.then_some(proof::Paths { find: &mut with_paths, follow_from_choices });
+    prove(mission, rule, Effort { alternatives, stop, paths })
 }

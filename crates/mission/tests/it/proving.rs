@@ -93,3 +93,27 @@ fn the_mission_of_the_paper() {
         assert_eq!(found.name(), verdict, "{rule}: {}", found.sentence());
     }
 }
+
+/// Two rovers drive to C, one after the other. Which one is first decides which of them stops beside the other, and so how
+/// far each drives.
+#[test]
+fn what_another_order_of_arrivals_may_break_is_not_decided() {
+    let mission = |branches: &str| {
+        format!(
+            "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+             location A (24, 52); location B (24, 92); location C (60, 72);
+             vehicle R1 : ATRV at A; vehicle R2 : ATRV at B; resource Lane capacity 1;
+             resource E1 0..1000 = 1000; resource E2 0..1000 = 1000;
+             primitive Drive1(to) [1,200] moves R1 uses Lane consumes E1 1 per metre;
+             primitive Drive2(to) [1,200] moves R2 uses Lane consumes E2 1 per metre;
+             scenario S[0,900] = {{ {branches} }}"
+        )
+    };
+    let rule = "E2 >= 925";
+    let in_order = |first: &str, then: &str| mission(&format!("{first}; delay; {then}"));
+    let first = proven_of(in_order("Drive1(C)", "Drive2(C)"), rule);
+    assert_eq!(first.name(), "broken", "{}", first.sentence());
+    // Its own plan lets R2 drive first.
+    let either = proven_of(mission("{ delay; Drive1(C) }, { delay; Drive2(C) }"), rule);
+    assert!(matches!(either.name(), "broken" | "open"), "{}", either.sentence());
+}

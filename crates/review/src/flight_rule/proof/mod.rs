@@ -84,6 +84,13 @@ pub struct Mission<'a> {
 /// The network with the paths of a plan, in which its movements start where they do in it; why there are none.
 pub type WithPaths<'a> = dyn FnMut(&Plan) -> Result<Network, String> + 'a;
 
+/// The paths of a mission's plans.
+pub struct Paths<'a> {
+    pub find: &'a mut WithPaths<'a>,
+    /// Whether the choices of a plan say where each movement starts and ends.
+    pub follow_from_choices: bool,
+}
+
 /// How long to look, and what to ask.
 pub struct Effort<'a> {
     /// How many alternatives the planner tries for one rule.
@@ -91,7 +98,7 @@ pub struct Effort<'a> {
     /// Whether to leave the rest open.
     pub stop: &'a mut dyn FnMut() -> bool,
     /// Finds paths, where the mission's vehicles need them.
-    pub with_paths: Option<&'a mut WithPaths<'a>>,
+    pub paths: Option<Paths<'a>>,
 }
 
 impl Verdict {
@@ -162,9 +169,9 @@ pub const ALTERNATIVES: u64 = 200_000;
 
 /// Proves that a rule holds in every plan of a mission, or finds a plan that breaks it.
 pub fn prove(mission: Mission<'_>, rule: &MissionRule, effort: Effort<'_>) -> Proven {
-    let Effort { alternatives, stop, with_paths } = effort;
+    let Effort { alternatives, stop, paths } = effort;
     let meter = Meter { left: alternatives, before: 0, last: 0, stop, limit: None };
-    let mut proof = Proof { mission, with_paths, meter };
+    let mut proof = Proof { mission, paths, meter };
     let verdict = proof.verdict(&rule.rule);
     Proven { rule: rule.rule.clone(), verdict, alternatives: proof.meter.tried() }
 }
@@ -211,7 +218,7 @@ impl Termination for Meter<'_> {
 
 struct Proof<'a, 'b> {
     mission: Mission<'a>,
-    with_paths: Option<&'b mut WithPaths<'b>>,
+    paths: Option<Paths<'b>>,
     meter: Meter<'b>,
 }
 
@@ -270,7 +277,7 @@ impl Proof<'_, '_> {
         if network.root.is_none() {
             return Found::Open("the file is a network without the structure of a mission".to_owned());
         }
-        self.find_in(network, self.with_paths.is_some(), judge)
+        self.find_in(network, self.paths.is_some(), judge)
     }
 
     /// Looks for it among the plans of a network, which may await the paths of its plans.
@@ -355,15 +362,14 @@ impl Proof<'_, '_> {
         let mut bare = network.with_choices(choices.iter().copied());
         bare.objective.clear();
         let outcome = self.meter.plan(&bare, &OPTIONS, &[]);
-        let (Some(plan), Some(with_paths)) = (outcome.plans.first(), &mut self.with_paths) else {
+        let (Some(plan), Some(paths)) = (outcome.plans.first(), &mut self.paths) else {
             return match outcome.status {
                 Status::NoPlan => Tried::Refuted,
                 _ => Tried::Open("no plan was found that makes its choices".to_owned()),
             };
         };
-        // Where the text orders all movements, the choices say where each traverse starts.
-        let is_only_way = !kirk::has_open_order(network);
-        match with_paths(plan) {
+        let is_only_way = paths.follow_from_choices;
+        match (paths.find)(plan) {
             Err(_) if is_only_way => Tried::Refuted,
             Err(why) => Tried::Open(why),
             Ok(driven) => match self.find_in(&driven.with_choices(choices.iter().copied()), false, judge) {

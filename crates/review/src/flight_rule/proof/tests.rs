@@ -14,7 +14,7 @@ fn proven(source: &str, rule: &str) -> Proven {
     let mission =
         Mission { program: &snapshot.program, network, plan: snapshot.plan().map(|plan| (network, plan)) };
     let rule = MissionRule { name: "R".into(), rule: rule.into(), ..MissionRule::default() };
-    prove(mission, &rule, Effort { alternatives: ALTERNATIVES, stop: &mut || false, with_paths: None })
+    prove(mission, &rule, Effort { alternatives: ALTERNATIVES, stop: &mut || false, paths: None })
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn a_mission_without_a_plan_and_a_search_that_is_stopped_prove_nothing() {
     let plan = snapshot.plan().map(|plan| (network, plan));
     let mission = Mission { program: &snapshot.program, network, plan };
     let rule = MissionRule { rule: "Battery >= 15".into(), ..MissionRule::default() };
-    let effort = Effort { alternatives: ALTERNATIVES, stop: &mut || true, with_paths: None };
+    let effort = Effort { alternatives: ALTERNATIVES, stop: &mut || true, paths: None };
     assert_eq!(prove(mission, &rule, effort).verdict.name(), "open");
 }
 
