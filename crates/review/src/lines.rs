@@ -289,10 +289,8 @@ fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
 
 fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
     let outcome = &planning.outcome;
-    let what = outcome.unplannable_message(network).unwrap_or_else(|| match outcome.status {
-        kirk::Status::Limit => "planning was stopped before it had a result".to_owned(),
-        kirk::Status::NoPlan | kirk::Status::Plan | kirk::Status::Error => "there is no plan".to_owned(),
-    });
+    let none = || planning.undecided().unwrap_or("there is no plan").to_owned();
+    let what = outcome.unplannable_message(network).unwrap_or_else(none);
     let mut lines = vec![places.plain(Status::Failed, what)];
     if let Some(failure) = &planning.outcome.failure {
         lines.extend(failure.reasons.iter().map(|reason| {

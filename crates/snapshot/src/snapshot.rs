@@ -280,6 +280,17 @@ impl Planning {
         gap.into_iter().chain(repairs).chain(bounds).collect()
     }
 
+    /// Why it is not known whether there is a plan, in one sentence without an end; nothing if that is known.
+    pub fn undecided(&self) -> Option<&'static str> {
+        let is_open = self.outcome.status == kirk::Status::Limit && self.outcome.plans.is_empty();
+        let why = if self.undrivable.is_empty() {
+            "planning was stopped before it found an answer"
+        } else {
+            "no plan was found, but there may be one in which vehicles stop elsewhere"
+        };
+        is_open.then_some(why)
+    }
+
     /// Whether anything in it refers to places in the text.
     pub fn refers_to_places(&self) -> bool {
         self.outcome.failure.is_some()

@@ -311,8 +311,10 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
     let mut text = match outcome.status {
         Status::Plan => String::new(),
         Status::NoPlan => "no plan\n".to_owned(),
-        Status::Limit if outcome.plans.is_empty() => "time limit reached: undecided\n".to_owned(),
-        Status::Limit => "limit reached: there may be more plans\n".to_owned(),
+        Status::Limit => {
+            let undecided = planned.planning.undecided().map(|why| format!("undecided: {why}\n"));
+            undecided.unwrap_or_else(|| "limit reached: there may be more plans\n".to_owned())
+        }
         Status::Error => {
             let message = outcome.unplannable_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()

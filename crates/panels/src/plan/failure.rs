@@ -25,7 +25,8 @@ pub(crate) fn show(
     let tokens = context.tokens;
     let verdict = match planning.outcome.status {
         Status::Plan | Status::NoPlan => "This mission has no plan.",
-        Status::Limit => "Planning was stopped before it found an answer.",
+        Status::Limit if planning.undrivable.is_empty() => "Planning was stopped before it found an answer.",
+        Status::Limit => "No plan was found, but there may be one in which vehicles stop elsewhere.",
         Status::Error => "A time in this mission is too large to represent exactly.",
     };
     ui.horizontal(|ui| {

@@ -39,7 +39,7 @@ pub fn show(
             let (text, color) = match searched.status {
                 Status::Plan => ("plan found", tokens.solution),
                 Status::NoPlan => ("no plan", tokens.failure),
-                Status::Limit => ("time limit reached", tokens.warning),
+                Status::Limit => ("undecided", tokens.warning),
                 Status::Error => ("times too large", tokens.error),
             };
             ui.label(RichText::new(text).small().color(color));
