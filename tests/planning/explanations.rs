@@ -86,7 +86,8 @@ fn told_needs(sentence: &str) -> Option<usize> {
     // `X in {A, C}` is one name.
     let names: String =
         names.split('{').map(|part| part.split_once('}').map_or(part, |(_, rest)| rest)).collect();
-    let names = names.rsplit(": ").next()?;
+    let names = without_arguments(names.rsplit(": ").next()?);
+    let names = names.as_str();
     let is_named = !["separating them", "running them one after the other", "their order in the mission"]
         .contains(&names);
     let (first, last) = names.rsplit_once(" and ").unwrap_or((names, ""));
@@ -100,6 +101,20 @@ fn told_needs(sentence: &str) -> Option<usize> {
         },
     };
     is_named.then(|| parts.map(count).sum()).flatten()
+}
+
+/// `Look(Scout1, RIDGE)` is one name, and ` (2 times)` is none.
+fn without_arguments(names: &str) -> String {
+    let (mut kept, mut is_inside, mut last) = (String::new(), false, ' ');
+    for letter in names.chars() {
+        is_inside |= letter == '(' && last != ' ';
+        if !is_inside {
+            kept.push(letter);
+        }
+        is_inside &= letter != ')';
+        last = letter;
+    }
+    kept
 }
 
 /// The bounds of a negative cycle that need time and that an author has written, or that keep two apart.

@@ -59,7 +59,7 @@ pub(crate) fn reason(
     let cycle = cycle(model, kind, &choices, &members);
     let told = wording::Told { network, kind, choices: &choices, conflict: &members, cycle: &cycle };
     Some(Reason {
-        message: told.message(),
+        message: network.readable(&told.message()),
         spans: spans(network, &members, &cycle),
         choices,
         kind,

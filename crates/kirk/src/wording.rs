@@ -525,7 +525,7 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
         lines.splice(..left_out, [format!("{left_out} earlier events, as planned")]);
     }
     lines.push(broken);
-    lines
+    lines.iter().map(|line| network.readable(line)).collect()
 }
 
 /// Whether the bounds of an arc are rules of the language, which no author wrote.

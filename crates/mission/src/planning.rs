@@ -1037,6 +1037,9 @@ pub(crate) fn conclude(
     if let Some(plan) = outcome.plans.first() {
         warnings.extend(programs::overlaps(&problem.programs(), &network, plan));
     }
+    for warning in &mut warnings {
+        warning.message = network.readable(&warning.message);
+    }
     let undrivable: Vec<Undrivable> = inserted
         .into_values()
         .filter_map(|traverse| match traverse.legs {

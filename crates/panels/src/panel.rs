@@ -43,6 +43,12 @@ impl Context<'_> {
         Some((snapshot.network.as_deref()?, plan))
     }
 
+    /// A text with what people read for calls instead of their identifiers.
+    pub fn readable(&self, text: &str) -> String {
+        let network = self.snapshot.and_then(|snapshot| snapshot.network.as_deref());
+        network.map_or_else(|| text.to_owned(), |network| network.readable(text))
+    }
+
     /// The step of the search that is looked at, if one is, with what the search knew there.
     pub fn step(&self) -> Option<&workbench::state::search::View> {
         self.state.search.plan(self.snapshot?)?;

@@ -38,6 +38,8 @@ fn policy(style: &str) -> String {
 
 /// Writes the report.
 pub fn html(document: &Document<'_>) -> String {
+    let review = document.snapshot.network.as_deref().map(|network| document.review.readable(network));
+    let document = &Document { review: review.as_ref().unwrap_or(document.review), ..*document };
     let title = format!("Mission review: {}", document.name);
     let nothing = Record::default();
     let record = document.record.unwrap_or(&nothing);

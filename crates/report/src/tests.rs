@@ -77,12 +77,12 @@ fn row_with(page: &str, cell: &str) -> String {
 fn the_report_has_the_windows_the_margins_and_the_hash() {
     let page = report(SCENARIO, "t01.rmpl");
     assert!(
-        row_with(&page, "Group-Wait#1.end").contains("|415||514||99|"),
+        row_with(&page, "Group-Wait(TAI_HOLD1, TAI_HOLD2).end").contains("|415||514||99|"),
         "{}",
-        row_with(&page, "Group-Wait#1.end")
+        row_with(&page, "Group-Wait(TAI_HOLD1, TAI_HOLD2).end")
     );
     assert!(row_with(&page, "Tell(PROCEED=OK)#1.start").contains("|460||600||140|"));
-    assert!(row_with(&page, "Ask(PATH1=OK)@Group-Traverse-Path#1").contains("[0, 45]"));
+    assert!(row_with(&page, "Ask(PATH1=OK)@Group-Traverse-Path(PATH1_1, …, TAI_POS)").contains("[0, 45]"));
     assert!(page.contains("[1, 185]"));
     assert!(page.contains(&planned(SCENARIO).review.content_hash));
 }

@@ -49,6 +49,15 @@ pub enum Fate {
     NotExamined,
 }
 
+impl Alternative {
+    /// Writes what people read for calls.
+    pub(crate) fn name_calls(&mut self, network: &Network) {
+        if let Fate::Impossible { reason, .. } = &mut self.fate {
+            *reason = network.readable(reason);
+        }
+    }
+}
+
 impl Fate {
     /// In one sentence, for people.
     pub fn sentence(&self) -> String {

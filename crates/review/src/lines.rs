@@ -67,8 +67,36 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.traverses = lines.traverses();
     }
     find_places(&mut review, snapshot);
+    if let Some(network) = &snapshot.network {
+        name_calls(&mut review, network);
+    }
     review.judge(&FlightRules::default(), None);
     review
+}
+
+/// Writes what people read for calls, with their arguments. The names that files have stay identifiers.
+fn name_calls(review: &mut Review, network: &Network) {
+    for line in review.every_line() {
+        line.text = network.readable(&line.text);
+    }
+    for alternative in review.choices.iter_mut().flat_map(|choice| &mut choice.alternatives) {
+        alternative.name_calls(network);
+    }
+}
+
+impl Review {
+    /// A copy to read: the names of its intervals, events and traverses have calls with their arguments, too.
+    pub fn readable(&self, network: &Network) -> Self {
+        let mut review = self.clone();
+        let links = review.causal_links.iter_mut().flat_map(|it| [&mut it.ask, &mut it.tell]);
+        let conflicts = review.conflicts.iter_mut().flat_map(|it| [&mut it.first, &mut it.then]);
+        let events = review.events.iter_mut().map(|it| &mut it.name);
+        let traverses = review.traverses.iter_mut().map(|it| &mut it.name);
+        for name in links.chain(conflicts).chain(events).chain(traverses) {
+            *name = network.readable(name);
+        }
+        review
+    }
 }
 
 /// What a mission counts time in.

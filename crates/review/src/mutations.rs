@@ -162,7 +162,7 @@ fn durations_that_the_plan_narrows() {
     assert_eq!(worst(&endless, Section::Durations), Status::Information);
     // The paper's mission: 405 to 486 minutes, of which the closing path leaves 450.
     let enroute = reviewed(MISSION);
-    let drive = line(&enroute, Section::Durations, "Group-Traverse-Path#1");
+    let drive = line(&enroute, Section::Durations, "Group-Traverse-Path(PATH1_1, …, TAI_POS)");
     assert!(
         drive.text.ends_with("[405,486], but the plan is valid only if it takes 405 to 450 min"),
         "{drive:?}"
@@ -387,7 +387,7 @@ fn what_the_mission_does_not_keep_apart() {
     assert_eq!(
         texts(&open, Section::Overlaps),
         [
-            "Drill and Brush may overlap on Rover: in some schedule of the plan, Drill#1 and Brush#1 are in progress at the same \
+            "Drill and Brush may overlap on Rover: in some schedule of the plan, Drill#1 and Brush(Rover) are in progress at the same \
              time from 0 to 60"
         ]
     );

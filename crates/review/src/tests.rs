@@ -318,7 +318,7 @@ fn a_reservoir_has_room_for_detours_where_the_map_may_leave_out_rocks() {
     assert!(tight.resources.is_empty() && tight.status == Status::Failed, "{tight:?}");
     let reasons = format!("{tight:?}");
     assert!(
-        reasons.contains("depending on the distance that is really driven, Drive#1 takes 28."),
+        reasons.contains("depending on the distance that is really driven, Drive(B) takes 28."),
         "{reasons}"
     );
     for (terrain, level) in [(terrain, 70), ("", 45)] {
@@ -375,7 +375,7 @@ fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() 
     let mapped = "terrain \"flat\" cell 0.6;";
     let (status, text) = controllable(mapped, "1.2");
     assert_eq!(status, Status::Attention, "{text}");
-    assert!(text.ends_with("; slow driving in Drive#1 may make the plan late"), "{text}");
+    assert!(text.ends_with("; slow driving in Drive(B) may make the plan late"), "{text}");
     // With more time, or without a map that may leave out rocks, nothing extends it.
     for (terrain, most) in [(mapped, "9"), ("", "1.2")] {
         assert_eq!(controllable(terrain, most).0, Status::Passed);
@@ -475,7 +475,7 @@ fn a_formation_sets_out_from_one_location() {
         review.separation_violations.iter().map(|line| (line.status, line.text.clone())).collect()
     };
     let expected =
-        "Convoy#1 sets out in formation behind R1 from A, but R2 is at B; drive it to A first".to_owned();
+        "Convoy(C) sets out in formation behind R1 from A, but R2 is at B; drive it to A first".to_owned();
     let scattered = mission("");
     assert_eq!(texts_of(&scattered), [(Status::Failed, expected)]);
     let drives = scattered.traverses.iter().map(|it| (it.line.status, it.may_be_late)).collect::<Vec<_>>();
@@ -513,7 +513,7 @@ fn a_vehicle_s_movements_come_one_after_the_other() {
          scenario S[0,500] = { Drive(ROCK); Drive(BASE) }",
     );
     let lines = texts(&review, Section::States);
-    let wanted = "R1 makes 2 movements, one after the other: Drive#1, Drive#2".to_owned();
+    let wanted = "R1 makes 2 movements, one after the other: Drive(ROCK), Drive(BASE)".to_owned();
     assert!(lines.contains(&wanted), "{lines:?} {:?}", review.plan);
 }
 

@@ -13,7 +13,7 @@ const MAX_NAMED: usize = 2;
 
 impl Network {
     /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path(A, …, TAI_POS)` where
-    /// the call is long, or `Dig#1, Analyze#1 and 2 more`. `nothing` where it does nothing.
+    /// the call is long, or `Drive(RIDGE), Dig#1 and 2 more`. `nothing` where it does nothing.
     ///
     /// Takes time linear in the network for each alternative of the decision.
     pub fn alternative_name(&self, decision: DecisionId, alternative: u32) -> String {
@@ -44,7 +44,8 @@ impl Network {
             [] => "nothing".to_owned(),
             [single] => self.call(single),
             several => {
-                let names: Vec<&str> = several.iter().take(MAX_NAMED).map(|it| it.name.as_str()).collect();
+                let names: Vec<String> =
+                    several.iter().take(MAX_NAMED).map(|it| self.readable(&it.name)).collect();
                 match several.len().saturating_sub(MAX_NAMED) {
                     0 => names.join(" and "),
                     rest => format!("{} and {rest} more", names.join(", ")),
@@ -55,15 +56,11 @@ impl Network {
 
     /// The call of an activity; its name where another call, shortened, reads the same.
     fn call(&self, occurrence: &Occurrence) -> String {
-        let told = |occurrence: &Occurrence| {
-            let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
-            shortened(&occurrence.activity, &arguments)
-        };
-        let text = told(occurrence);
+        let text = shortened_call(occurrence);
         let is_alike = |other: &Occurrence| {
             other.activity == occurrence.activity
                 && other.arguments != occurrence.arguments
-                && told(other) == text
+                && shortened_call(other) == text
         };
         if occurrence.arguments.is_empty() || (text.contains('…') && self.occurrences.iter().any(is_alike))
         {
@@ -101,6 +98,12 @@ impl Network {
         }
         found
     }
+}
+
+/// The call of an activity, shortened where it is long.
+pub(crate) fn shortened_call(occurrence: &Occurrence) -> String {
+    let arguments: Vec<&str> = occurrence.arguments.iter().map(SmolStr::as_str).collect();
+    shortened(&occurrence.activity, &arguments)
 }
 
 /// A call, shortened where it is long: by the arguments between the first and the last one, then by the ends of both.
@@ -159,7 +162,7 @@ mod tests {
         assert_eq!(names("Dig(EAST)[1,2], Dig(WEST)[1,2]"), ["Dig(EAST)", "Dig(WEST)"]);
         assert_eq!(
             names("Both(), { Dig(A)[1,2]; Rest()[1,1]; Dig(B)[1,2] }"),
-            ["Both#1", "Dig#3, Rest#1 and 1 more"]
+            ["Both#1", "Dig(A)#3, Rest#1 and 1 more"]
         );
         assert_eq!(
             names("Dig(A-PLACE-WITH-A-NAME-THAT-NOBODY-READS)[1,2], delay[1,2]"),

@@ -3,6 +3,8 @@
 //! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
 
 mod alternative;
+pub mod call_names;
+mod calls;
 pub mod compile;
 pub mod families;
 pub mod generate;

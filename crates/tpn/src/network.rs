@@ -9,6 +9,7 @@ use rmpl::program::{Change, Controllability, LabelMode, Measure, Order, componen
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use crate::call_names::NamesOnDemand;
 use crate::sight::Sight;
 
 macro_rules! id {
@@ -112,6 +113,9 @@ pub struct Network {
     /// What plans have to withstand of durations that the environment chooses.
     #[serde(default)]
     pub controllability: Controllability,
+    /// What people read for its calls.
+    #[serde(skip)]
+    pub names: NamesOnDemand,
 }
 
 /// A node: the events that happen at one time, or a point between them.

@@ -8,6 +8,7 @@ use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
+use crate::call_names::NamesOnDemand;
 use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
     NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Supply, Use, Variable, Worth,
@@ -223,6 +224,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         end,
         threat_gap,
         controllability,
+        names: NamesOnDemand::default(),
     })
 }
 

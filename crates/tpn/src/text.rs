@@ -1,13 +1,11 @@
 //! Networks for people and for drawing tools: a text dump and Graphviz DOT.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use exact::Bound;
 use markup::graphviz_string;
-use smol_str::SmolStr;
 
-use crate::network::{Arc, ArcId, ArcKind, Network, NodeId, Occurrence, OccurrenceKind, Role};
+use crate::network::{Arc, ArcId, ArcKind, Network, NodeId, Role};
 
 /// One line for each node with the arcs that leave it below.
 pub fn to_text(network: &Network) -> String {
@@ -37,55 +35,6 @@ pub fn to_text(network: &Network) -> String {
         let _ = writeln!(text, "{:>5} -> {:<5} {}", arc.from.0, arc.to.0, arc_text(network, constraint));
     }
     text
-}
-
-/// Readable names for texts in which calls are identifiers: calls with their arguments (SPEC 17).
-#[derive(Clone, Debug, Default)]
-pub struct CallNames {
-    by_identifier: BTreeMap<SmolStr, String>,
-}
-
-impl CallNames {
-    /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments.
-    pub fn new(network: &Network) -> Self {
-        let is_call = |it: &&Occurrence| {
-            matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
-                && !it.arguments.is_empty()
-        };
-        let calls = || network.occurrences.iter().filter(is_call);
-        let mut counts: BTreeMap<(&SmolStr, &[SmolStr]), usize> = BTreeMap::new();
-        for call in calls() {
-            *counts.entry((&call.activity, &call.arguments)).or_default() += 1;
-        }
-        let shown = |call: &Occurrence| {
-            let text = format!("{}({})", call.activity, call.arguments.join(", "));
-            match call.name.rsplit_once('#') {
-                Some((_, number)) if counts[&(&call.activity, call.arguments.as_slice())] > 1 => {
-                    format!("{text}#{number}")
-                }
-                _ => text,
-            }
-        };
-        Self { by_identifier: calls().map(|call| (call.name.clone(), shown(call))).collect() }
-    }
-
-    /// The text with its identifiers of calls replaced by their readable names.
-    pub fn in_text(&self, text: &str) -> String {
-        let mut shown = String::with_capacity(text.len());
-        let mut rest = text;
-        while let Some(at) = rest.find('#') {
-            let is_of_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-            let start = rest[..at].trim_end_matches(is_of_name).len();
-            let behind = &rest[at + 1..];
-            let end = rest.len() - behind.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-            shown.push_str(&rest[..start]);
-            let identifier = &rest[start..end];
-            shown.push_str(self.by_identifier.get(identifier).map_or(identifier, String::as_str));
-            rest = &rest[end..];
-        }
-        shown.push_str(rest);
-        shown
-    }
 }
 
 /// What is on an arc: its bounds, its labels and its activity.

@@ -88,7 +88,7 @@ fn each_entry_of_the_menu_is_one_edit_and_undo_takes_it_back() {
         (&["Add after", "Rest()"], "Dig(ROCK);\n  Rest();\n  Rest()\n"),
     ];
     for (entries, expected) in cases {
-        choose(&mut app, "Dig#1", entries);
+        choose(&mut app, "Dig(ROCK)", entries);
         assert!(scenario(&app).contains(expected), "{entries:?}: {}", scenario(&app));
         assert_eq!(app.json()["status"], "plan", "{entries:?}");
         dispatch(&mut app, "edit.undo", &json!(null));
@@ -106,7 +106,7 @@ fn the_name_of_a_new_activity_is_typed_over_it_in_all_places() {
     assert!(source.contains("primitive Look-Around()[1,5];"), "{source}");
     assert!(source.contains("Wake();\n  Look-Around();\n  Dig(ROCK);"), "{source}");
     assert_eq!(app.json()["status"], "plan");
-    choose(&mut app, "Dig#1", &["Rename…"]);
+    choose(&mut app, "Dig(ROCK)", &["Rename…"]);
     assert_eq!(app.json()["dialog"], "rename");
     type_name(&mut app, "Drill");
     app.harness.key_press(Key::Enter);
@@ -118,7 +118,7 @@ fn the_name_of_a_new_activity_is_typed_over_it_in_all_places() {
 #[test]
 fn keys_add_move_and_delete_what_is_selected_in_the_network() {
     let mut app = showing(MISSION);
-    let at = in_network(&app, "Dig#1");
+    let at = in_network(&app, "Dig(ROCK)");
     click(&mut app, at, PointerButton::Primary);
     app.harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::ArrowLeft);
     app.settle();
@@ -137,7 +137,7 @@ fn keys_add_move_and_delete_what_is_selected_in_the_network() {
 #[test]
 fn statements_are_copied_from_the_drawing_and_pasted_into_it() {
     let mut app = showing(MISSION);
-    let at = in_network(&app, "Dig#1");
+    let at = in_network(&app, "Dig(ROCK)");
     click(&mut app, at, PointerButton::Primary);
     app.harness.event(Event::Cut);
     app.settle();

@@ -261,7 +261,9 @@ fn the_caret_selects_in_all_panels_and_a_bar_of_the_timeline_selects_too() {
     app.settle();
     assert_eq!(app.json()["selection"]["name"], "Group-Enroute#1");
     app.harness
-        .get_by(|node| node.label().is_some_and(|it| it.contains(", Group-Traverse-Path#1: starts")))
+        .get_by(|node| {
+            node.label().is_some_and(|it| it.starts_with("Group-Traverse-Path(PATH1_1, …, TAI_POS): starts"))
+        })
         .click();
     app.settle();
     assert_eq!(app.json()["selection"]["name"], "Group-Traverse-Path#1");

@@ -93,7 +93,9 @@ fn an_activity_that_was_ended_early_stays_on_the_timeline() {
     let mut app = executing("exploration");
     dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
     let is_aborted = |app: &support::App| {
-        let bars = app.harness.query_all_by_label_contains("Group-Traverse-Path#1: started 10, aborted 10");
+        let bars = app
+            .harness
+            .query_all_by_label_contains("Group-Traverse-Path(PATH1_1, …, TAI_POS): started 10, aborted 10");
         bars.count()
     };
     assert_eq!(is_aborted(&app), 0);
@@ -313,7 +315,9 @@ fn what_may_go_wrong_next_is_in_sight_in_small_windows_too() {
         dispatch(&mut app, "view.workspace", &json!("execute"));
         app.settle();
         let panel = app.harness.get_by_label("Execution panel").rect();
-        for name in ["Withdraw Tell(PATH1=OK)#1", "Extend Group-Traverse-Path#1", "Stop Rover1"] {
+        for name in
+            ["Withdraw Tell(PATH1=OK)#1", "Extend Group-Traverse-Path(PATH1_1, …, TAI_POS)", "Stop Rover1"]
+        {
             let button = app.harness.get_by_role_and_label(Role::Button, name).rect();
             assert!(panel.contains_rect(button), "{size:?}: {name} at {button} in {panel}");
         }

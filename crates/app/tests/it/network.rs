@@ -46,7 +46,9 @@ fn the_network_says_what_it_shows() {
 #[test]
 fn clicking_an_activity_selects_it_everywhere() {
     let mut app = roomy();
-    app.harness.get_by_role_and_label(egui::Role::Button, "Group-Wait#1 in the network").click();
+    app.harness
+        .get_by_role_and_label(egui::Role::Button, "Group-Wait(TAI_HOLD1, TAI_HOLD2) in the network")
+        .click();
     app.settle();
     assert_eq!(app.json()["selection"]["name"], json!("Group-Wait#1"));
     app.harness.get_by_role_and_label(egui::Role::Button, "D1 in the network").click();
@@ -76,7 +78,7 @@ fn a_text_with_errors_keeps_the_last_network_and_says_so() {
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(&format!("{source}\nscenario {{"));
     app.settle();
-    assert!(has(&app, "Group-Wait#1 in the network"), "the network is still there");
+    assert!(has(&app, "Group-Wait(TAI_HOLD1, TAI_HOLD2) in the network"), "the network is still there");
     let says_so = app.harness.query_all_by_role(egui::Role::Image).any(|node| {
         node.accesskit_node()
             .label()
@@ -95,15 +97,15 @@ fn a_double_click_closes_an_activity_and_another_opens_it() {
         app.settle();
         app.settle();
     };
-    assert!(has(&app, "Group-Transmit#1 in the network"));
+    assert!(has(&app, "Group-Transmit(MCC, ARRIVED_TAI) in the network"));
     double_click(&mut app, "Group-Enroute#1 in the network");
-    assert!(!has(&app, "Group-Transmit#1 in the network"), "what is inside is hidden");
+    assert!(!has(&app, "Group-Transmit(MCC, ARRIVED_TAI) in the network"), "what is inside is hidden");
     // Apart from the clicks before, so that the four do not count as one.
     for _ in 0..40 {
         app.settle();
     }
     double_click(&mut app, "Group-Enroute#1 in the network");
-    assert!(has(&app, "Group-Transmit#1 in the network"), "and comes back");
+    assert!(has(&app, "Group-Transmit(MCC, ARRIVED_TAI) in the network"), "and comes back");
 }
 
 /// The text of the file of this name that was saved.
@@ -170,8 +172,10 @@ fn an_error_is_marked_at_the_activity_that_it_is_in() {
     });
     let marks: Vec<_> = marks.collect();
     let [(label, at)] = marks.as_slice() else { panic!("{marks:?}") };
-    let activity =
-        app.harness.get_by_role_and_label(egui::Role::Button, "Group-Transmit#1 in the network").rect();
+    let activity = app
+        .harness
+        .get_by_role_and_label(egui::Role::Button, "Group-Transmit(MCC, ARRIVED_TAI) in the network")
+        .rect();
     assert!((*at - activity.center()).length() < 120.0, "{label} at {at}, the activity is at {activity}");
     app.harness.get_by_label(label).click();
     app.settle();

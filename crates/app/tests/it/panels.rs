@@ -24,9 +24,9 @@ fn every_event_of_the_plan_is_listed_with_its_window() {
     // SPEC 3.6.
     for (event, window) in [
         ("Group-Enroute#1.start", "[10, 55]"),
-        ("Group-Traverse-Path#1.end", "[415, 460]"),
-        ("Group-Wait#1.end", "[415, 514]"),
-        ("Group-Transmit#1.end", "[415, 462]"),
+        ("Group-Traverse-Path(PATH1_1, …, TAI_POS).end", "[415, 460]"),
+        ("Group-Wait(TAI_HOLD1, TAI_HOLD2).end", "[415, 514]"),
+        ("Group-Transmit(MCC, ARRIVED_TAI).end", "[415, 462]"),
         ("Group-Enroute#1.end", "[460, 595]"),
         ("Tell(PROCEED=OK)#1.start", "[460, 600]"),
         ("scenario#1.end", "[660, 800]"),

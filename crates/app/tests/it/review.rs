@@ -103,7 +103,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
     // SPEC 3.6: the drive is over 0 to 45 minutes before path 1 closes. A margin that may be 0 has not passed.
     assert!(has(
         &app,
-        "needs attention: Tell(PATH1=OK)#1 supports PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
+        "needs attention: Tell(PATH1=OK)#1 supports PATH1=OK during Group-Traverse-Path(PATH1_1, …, TAI_POS) and outlasts it by 0 to 45 min"
     ));
     assert!(has(&app, "Causal links, needs attention, 1 needs attention"));
     assert!(has(&app, "Robustness, not run yet"));
@@ -309,14 +309,14 @@ fn a_line_leads_to_its_place_in_every_panel() {
     let range = state["caret"]["anchor"].as_u64().zip(state["caret"]["head"].as_u64());
     let (from, to) = range.expect("a caret");
     assert!(source[from as usize..to as usize].contains("PATH1"), "the caret is at the requirement");
-    click(&mut app, "passed: not(PROCEED=OK) during Group-Wait#1 ends");
+    click(&mut app, "passed: not(PROCEED=OK) during Group-Wait(TAI_HOLD1, TAI_HOLD2) ends");
     assert_eq!(app.json()["selection"]["kind"], "ordering");
-    click(&mut app, "Group-Wait#1.end [415, 514], slack 99");
+    click(&mut app, "Group-Wait(TAI_HOLD1, TAI_HOLD2).end [415, 514], slack 99");
     assert_eq!(app.json()["selection"]["name"], "Group-Wait#1.end");
     let label = app.harness.query_all_by_role(Role::Button).find_map(|node| {
-        node.accesskit_node()
-            .label()
-            .filter(|label| label.contains(": Group-Traverse-Path#1: ") && label.contains(" m in "))
+        node.accesskit_node().label().filter(|label| {
+            label.contains(": Group-Traverse-Path(PATH1_1, …, TAI_POS): ") && label.contains(" m in ")
+        })
     });
     click(&mut app, &label.expect("the traverse"));
     assert_eq!(app.json()["selection"]["name"], "Group-Traverse-Path#1");
@@ -325,7 +325,7 @@ fn a_line_leads_to_its_place_in_every_panel() {
 #[test]
 fn sections_fold_with_the_keyboard() {
     let mut app = reviewing();
-    assert!(has(&app, "Group-Wait#1.end [415, 514]"));
+    assert!(has(&app, "Group-Wait(TAI_HOLD1, TAI_HOLD2).end [415, 514]"));
     let heading = |app: &App| {
         let label = app.harness.query_all_by_role(Role::Button).find_map(|node| {
             node.accesskit_node().label().filter(|label| label.starts_with("Windows and slack"))
@@ -337,7 +337,7 @@ fn sections_fold_with_the_keyboard() {
     app.settle();
     app.harness.key_press(egui::Key::Enter);
     app.settle();
-    assert!(!has(&app, "Group-Wait#1.end [415, 514]"));
+    assert!(!has(&app, "Group-Wait(TAI_HOLD1, TAI_HOLD2).end [415, 514]"));
 }
 
 #[test]
@@ -518,7 +518,7 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
         &app,
         "condition Tell(PATH1=OK)#1 moved: starts [10, 10], ends [460, 460] → starts [10, 10], ends [470, 470]"
     ));
-    assert!(has(&app, "Group-Traverse-Path#1, moved: "));
+    assert!(has(&app, "Group-Traverse-Path(PATH1_1, …, TAI_POS), moved: "));
     undo(&mut app);
     app.harness.get_by_label("The plans are identical");
 }

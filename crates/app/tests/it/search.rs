@@ -438,19 +438,20 @@ fn what_is_selected_in_one_panel_is_selected_in_the_others() {
     // From the timeline.
     app.harness
         .get_by(|node| {
-            node.role() == Role::Button && node.label().is_some_and(|it| it.contains(", Group-Wait#1:"))
+            node.role() == Role::Button
+                && node.label().is_some_and(|it| it.starts_with("Group-Wait(TAI_HOLD1, TAI_HOLD2):"))
         })
         .click();
     app.settle();
     assert_eq!(selected(&app), "Group-Wait#1");
-    assert!(is_selected(&app, "Group-Wait#1.start ["), "in the windows of the plan");
+    assert!(is_selected(&app, "Group-Wait(TAI_HOLD1, TAI_HOLD2).start ["), "in the windows of the plan");
     // From the text.
     let source = app.harness.state().source();
     let at = source.rfind("Group-Transmit").expect("a call");
     dispatch(&mut app, "edit.select", &json!({ "start": at + 3 }));
     assert_eq!(selected(&app), "Group-Transmit#1");
-    assert!(is_selected(&app, "Group-Transmit#1:"), "on the timeline");
-    assert!(!is_selected(&app, "Group-Wait#1:"));
+    assert!(is_selected(&app, "Group-Transmit(MCC, ARRIVED_TAI):"), "on the timeline");
+    assert!(!is_selected(&app, "Group-Wait(TAI_HOLD1, TAI_HOLD2):"));
     // From the plan.
     app.harness
         .get_by(|node| {

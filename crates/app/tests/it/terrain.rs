@@ -81,7 +81,7 @@ fn a_click_on_a_path_selects_it_everywhere_and_says_what_is_known_of_it() {
     app.harness.get_by_label("Duration");
     app.harness.get_by_label("Steepest slope");
     app.harness.get_by_label("Leg clearance");
-    app.harness.get_by_label("Close Go#1").click();
+    app.harness.get_by_label("Close Go(HERE, THERE)").click();
     app.settle();
     assert_eq!(app.json()["selection"], json!(null));
     assert!(app.harness.query_by_label("Length").is_none());
@@ -375,7 +375,7 @@ fn the_panel_is_usable_at_a_width_of_300_points() {
     }
     dispatch(&mut app, "terrain.growth", &json!(null));
     dispatch(&mut app, "go.select", &json!("Go#1"));
-    for name in ["Measure", "Place", "Camera", "Hide search tree", "Close Go#1"] {
+    for name in ["Measure", "Place", "Camera", "Hide search tree", "Close Go(HERE, THERE)"] {
         let rect = app.harness.get_by_label(name).rect();
         assert!(rect.left() >= 0.0 && rect.right() <= 300.0 && rect.bottom() <= 420.0, "{name} at {rect:?}");
     }

@@ -108,7 +108,7 @@ fn dragging_an_event_narrows_the_windows_of_the_others_and_escape_gives_them_bac
 #[test]
 fn the_keyboard_moves_and_releases_events() {
     let mut app = reviewing();
-    app.harness.get_by_label("Move Group-Wait#1.end on the timeline").focus();
+    app.harness.get_by_label("Move Group-Wait(TAI_HOLD1, TAI_HOLD2).end on the timeline").focus();
     app.settle();
     app.harness.key_press(Key::ArrowRight);
     app.settle();
@@ -166,9 +166,9 @@ fn bars_are_in_lanes_by_vehicle_or_by_thread_and_lanes_close() {
     let mut app = reviewing();
     let drives = |app: &support::App| {
         let is_drive = |it: &egui_kittest::Node<'_>| {
-            it.accesskit_node()
-                .label()
-                .is_some_and(|it| it.contains("Group-Traverse-Path#1: starts") && !it.contains(" of "))
+            it.accesskit_node().label().is_some_and(|it| {
+                it.contains("Group-Traverse-Path(PATH1_1, …, TAI_POS): starts") && !it.contains(" of ")
+            })
         };
         app.harness.query_all_by_role(Role::Button).filter(is_drive).count()
     };
@@ -193,7 +193,7 @@ fn bars_are_in_lanes_by_vehicle_or_by_thread_and_lanes_close() {
 #[test]
 fn a_dropped_event_moves_its_bar_and_rows_still_have_no_overlap() {
     let mut app = reviewing();
-    app.harness.get_by_label("Move Group-Wait#1.end on the timeline").focus();
+    app.harness.get_by_label("Move Group-Wait(TAI_HOLD1, TAI_HOLD2).end on the timeline").focus();
     app.settle();
     for _ in 0..3 {
         app.harness.key_press(Key::ArrowRight);
@@ -213,7 +213,7 @@ fn conditions_are_tracks_with_what_is_asserted_and_what_is_required() {
     let mut app = reviewing();
     for label in [
         "Tell(PATH1=OK)#1: starts [10, 10], ends [460, 460]",
-        "PATH1=OK of Group-Traverse-Path#1: starts [10, 55], ends [415, 460]",
+        "PATH1=OK of Group-Traverse-Path(PATH1_1, …, TAI_POS): starts [10, 55], ends [415, 460]",
     ] {
         let shown = app.harness.query_all_by_role(Role::Button).any(|node| {
             node.accesskit_node()
@@ -223,7 +223,10 @@ fn conditions_are_tracks_with_what_is_asserted_and_what_is_required() {
         assert!(shown, "{label}");
     }
     app.harness
-        .get_by(|node| node.label().is_some_and(|it| it.starts_with("PATH1=OK of Group-Traverse-Path#1")))
+        .get_by(|node| {
+            node.label()
+                .is_some_and(|it| it.starts_with("PATH1=OK of Group-Traverse-Path(PATH1_1, …, TAI_POS)"))
+        })
         .click();
     app.settle();
     assert_eq!(app.json()["selection"]["name"], "Ask(PATH1=OK)@Group-Traverse-Path#1");

@@ -14,8 +14,8 @@ use review::{FlightRules, Section, review};
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 use tpn::Network;
+use tpn::call_names::CallNames;
 use tpn::plan_json::plan_from_json;
-use tpn::text::CallNames;
 
 use crate::commands::report::read_rules;
 use crate::commands::verify::without_path_vertices;

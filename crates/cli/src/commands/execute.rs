@@ -10,7 +10,7 @@ use executive::{Observations, Progress, Waiting};
 use mission::Manner;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
-use tpn::text::CallNames;
+use tpn::call_names::CallNames;
 use tpn::{Network, Plan, Window};
 
 use crate::deadline::TimeLimit;

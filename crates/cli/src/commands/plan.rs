@@ -16,7 +16,7 @@ use rmpl::files::Files;
 use serde_json::{Value, json};
 use snapshot::paths_json::{separation_violations_json, traverses_json};
 use snapshot::{Planning, Problem};
-use tpn::text::CallNames;
+use tpn::call_names::CallNames;
 use tpn::{Levels, Network, Supply};
 
 use crate::commands::held_rules::HeldRules;
@@ -311,10 +311,11 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
     let mut text = match outcome.status {
         Status::Plan => String::new(),
         Status::NoPlan => "no plan\n".to_owned(),
-        Status::Limit => {
-            let undecided = planned.planning.undecided().map(|why| format!("undecided: {why}\n"));
-            undecided.unwrap_or_else(|| "limit reached: there may be more plans\n".to_owned())
-        }
+        Status::Limit => match planned.planning.undecided() {
+            None => "limit reached: there may be more plans\n".to_owned(),
+            Some(_) if planned.planning.undrivable.is_empty() => "time limit reached: undecided\n".to_owned(),
+            Some(why) => format!("undecided: {why}\n"),
+        },
         Status::Error => {
             let message = outcome.unplannable_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()

@@ -8,7 +8,7 @@ use review::flight_rule::proof::{Counterexample, Proven, Verdict};
 use review::{FlightRules, MissionRule};
 use serde_json::{Value, json};
 use tpn::Choice;
-use tpn::text::CallNames;
+use tpn::call_names::CallNames;
 
 use crate::commands::prove::count;
 use crate::commands::report::read_rules;

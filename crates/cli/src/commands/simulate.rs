@@ -10,7 +10,7 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use snapshot::{DriveFrame, Problem, SimulatedDrive};
 use tpn::Network;
-use tpn::text::CallNames;
+use tpn::call_names::CallNames;
 
 use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use mission::{Compiled, Manner};
 use serde_json::{Value, json};
+use tpn::call_names::CallNames;
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
-use tpn::text::CallNames;
 use tpn::{EventEnd, Network};
 
 use crate::diagnostics::print_problems;

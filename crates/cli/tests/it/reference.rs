@@ -137,7 +137,7 @@ fn the_first_tutorial_breaks_the_plan_as_it_says() {
         (
             "PATH2=OK [500,500]",
             "PATH2=OK [404,404]",
-            "Group-Traverse-Path(PATH1_1, PATH1_2, PATH1_3, TAI_POS) needs at least 405, but PATH1=OK holds for only 404",
+            "Group-Traverse-Path(PATH1_1, …, TAI_POS) needs at least 405, but PATH1=OK holds for only 404",
         ),
     ] {
         assert!(tutorial.contains(&format!("`{from}` to `{to}`")) && text.contains(from), "{from}");

@@ -46,6 +46,7 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
         end,
         threat_gap,
         controllability: Controllability::Dynamic,
+        names: tpn::call_names::NamesOnDemand::default(),
     };
     link(&mut network);
     Ok(Document { network, objects, node_uids, arc_uids, not_planned })

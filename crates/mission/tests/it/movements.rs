@@ -76,7 +76,7 @@ fn one_vehicle_does_not_drive_to_two_places_at_once() {
     let at_once = plan(&format!("{DRIVE} scenario X[0,1500] = {{ Drive(A), Drive(B) }}"));
     let failure = at_once.planning.outcome.failure.as_ref().expect("there is no plan");
     assert_eq!(failure.reasons[0].kind, kirk::FailureKind::Threat);
-    assert!(failure.reasons[0].message.starts_with("Drive#1 and Drive#2 both move R1"), "{failure:?}");
+    assert!(failure.reasons[0].message.starts_with("Drive(A) and Drive(B) both move R1"), "{failure:?}");
     let waiting = plan(&format!("{DRIVE} scenario X[0,1500] = {{ free Drive(A), free Drive(B) }}"));
     assert_driven_one_after_the_other(&waiting, 2);
 }

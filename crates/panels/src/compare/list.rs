@@ -38,7 +38,7 @@ fn row(ui: &mut Ui, context: &Context<'_>, difference: &Difference, commands: &m
     let small = TextStyle::Small.resolve(ui.style());
     let width = ui.available_width();
     let wrap = (width - WORD_WIDTH - space::M).max(80.0);
-    let name = format!("{} {}", difference.subject.name(), difference.name);
+    let name = context.readable(&format!("{} {}", difference.subject.name(), difference.name));
     let name = ui.painter().layout(name, body, tokens.text, wrap);
     let detail = match (&difference.before, &difference.after) {
         (Some(before), Some(after)) => format!("{before}  →  {after}"),
@@ -48,7 +48,8 @@ fn row(ui: &mut Ui, context: &Context<'_>, difference: &Difference, commands: &m
     let detail = ui.painter().layout(detail, small.clone(), tokens.text_muted, wrap);
     let height = name.size().y + detail.size().y + 7.0;
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, difference.sentence()));
+    response
+        .widget_info(|| WidgetInfo::labeled(Role::Button, true, context.readable(&difference.sentence())));
     if ui.is_rect_visible(rect) {
         if response.hovered() || response.has_focus() {
             ui.painter().rect_filled(rect, 3.0, tokens.hover);

@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, comparison: &Comparison) 
     let high_per_wide = size_m.y / size_m.x.max(1.0);
     let height = (width * high_per_wide as f32).clamp(120.0, MAX_SIZE[1]);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, words(comparison)));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, context.readable(&words(comparison))));
     if !ui.is_rect_visible(rect) {
         return;
     }

@@ -69,16 +69,16 @@ pub(super) fn show(
             Pos2::new(rect.right(), rect.bottom()),
         )),
     };
-    let pairs: Vec<PairRow> = rows[first..last].iter().map(|row| pair(row)).collect();
+    let pairs: Vec<PairRow> = rows[first..last].iter().map(|row| pair(context, row)).collect();
     paint(ui.painter(), context, &pair_list(&pairs, &track, INDENT));
 }
 
-fn pair(row: &Row) -> PairRow {
+fn pair(context: &Context<'_>, row: &Row) -> PairRow {
     let times = |windows: Option<[Window; 2]>| {
         windows.map(|windows| windows.map(|it| [number(it.earliest), bound(it.latest)]))
     };
     PairRow {
-        name: row.name.as_str().into(),
+        name: context.readable(&row.name).into(),
         is_different: row.change.is_some(),
         before: times(row.before),
         after: times(row.after),
@@ -109,7 +109,7 @@ fn horizon(comparison: &Comparison) -> f64 {
 fn show_row(ui: &Ui, context: &Context<'_>, row: &Row, rect: Rect, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let response = ui.interact(rect, ui.scope_id().with(("row", &row.name)), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, words(row)));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, context.readable(&words(row))));
     if !ui.is_rect_visible(rect) {
         return;
     }
@@ -127,7 +127,7 @@ fn show_row(ui: &Ui, context: &Context<'_>, row: &Row, rect: Rect, commands: &mu
     if response.clicked() {
         select(context, &row.name, commands);
     }
-    response.on_hover_text(words(row));
+    response.on_hover_text(context.readable(&words(row)));
 }
 
 fn words(row: &Row) -> String {

@@ -49,6 +49,7 @@ fn row(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, entry: &Entry, comm
         Happening::Stopped { reason } => (format!("✗ stopped: {reason}"), tokens.error),
         Happening::Finished => ("✓ finished".to_owned(), tokens.good),
     };
+    let text = shown.network.readable(&text);
     ui.horizontal(|ui| {
         let at = format!("{:>8}", time_text::short(entry.time).replace("≈ ", ""));
         ui.label(RichText::new(at).monospace().small().color(tokens.text_muted));

@@ -99,7 +99,7 @@ fn due(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut Comm
     let left = number(latest) - context.state.playback.time;
     let note = if left >= 0.0 { format!("in {left:.1}") } else { "overdue".to_owned() };
     section(ui, context, "Next deadline", &note);
-    let name = shown.network.event_name(event);
+    let name = shown.network.readable(&shown.network.event_name(event));
     let text = RichText::new(format!("{name} by {}", time_text::short(latest)));
     selectable_row(ui, context, &Selection::Occurrence(event.occurrence), text, commands);
 }
@@ -136,7 +136,8 @@ pub(super) fn words(shown: Shown<'_>, id: OccurrenceId) -> String {
     }
 }
 
-/// The name of an occurrence in programs.
+/// The name of an occurrence, which no other one has.
 pub(super) fn name(shown: Shown<'_>, occurrence: OccurrenceId) -> String {
-    shown.network.occurrences.get(occurrence.index()).map_or_else(String::new, |it| it.name.to_string())
+    let occurrence = shown.network.occurrences.get(occurrence.index());
+    occurrence.map_or_else(String::new, |it| shown.network.readable(&it.name))
 }

@@ -9,6 +9,12 @@ use workbench::state::selection::node_name;
 
 /// A heading and lines about an item of the drawing.
 pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {
+    let (heading, lines) = named(item, network, plan)?;
+    Some((network.readable(&heading), lines.iter().map(|line| network.readable(line)).collect()))
+}
+
+/// The same with identifiers of calls.
+fn named(item: Item, network: &Network, plan: Option<&Plan>) -> Option<(String, Vec<String>)> {
     match item {
         Item::Node(id) => describe_node(id, network, plan),
         Item::Arc(id) => describe_arc(id, network, plan),
@@ -56,8 +62,11 @@ pub(super) fn describe_box(
         matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Assertion)
     };
     let inside: Vec<&tpn::Occurrence> = network.occurrences.iter().filter(is_inside).filter(named).collect();
-    let mut lines: Vec<String> =
-        inside.iter().take(MAX_INSIDE).map(|it| format!("{}{}", it.name, bounds(it))).collect();
+    let mut lines: Vec<String> = inside
+        .iter()
+        .take(MAX_INSIDE)
+        .map(|it| format!("{}{}", network.readable(&it.name), bounds(it)))
+        .collect();
     if let Some(more) = inside.len().checked_sub(MAX_INSIDE).filter(|&more| more > 0) {
         lines.push(format!("… and {more} more"));
     }
@@ -131,7 +140,9 @@ fn describe_arc(id: tpn::ArcId, network: &Network, plan: Option<&Plan>) -> Optio
     let occurrence = arc.occurrence.and_then(|id| network.occurrences.get(id.index()));
     let mut lines = Vec::new();
     if let Some(occurrence) = occurrence.filter(|it| !it.arguments.is_empty()) {
-        lines.push(format!("{}({})", occurrence.activity, occurrence.arguments.join(", ")));
+        let complete = format!("{}({})", occurrence.activity, occurrence.arguments.join(", "));
+        // The heading leaves arguments of long calls out.
+        lines.extend((network.readable(&occurrence.name) != complete).then_some(complete));
     }
     lines.push(format!("{} {}", kind_name(arc.kind), bounds_label(arc.lower, arc.upper)));
     if arc.is_contingent {

@@ -48,7 +48,7 @@ pub(super) fn show(
     for Landmark { rect, selection, opens } in found {
         let name = match &opens {
             Some((_, _, title)) => format!("{title}, collapsed, in the network"),
-            None => format!("{} in the network", selection.name(Some(network))),
+            None => format!("{} in the network", selection.title(Some(network))),
         };
         // Several boxes may have one name.
         let block = opens.as_ref().map(|(first, ..)| first.0);

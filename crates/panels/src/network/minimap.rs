@@ -151,7 +151,8 @@ mod tests {
     fn the_overview_leaves_free_what_is_seen_if_some_corner_is() {
         let steps = ["A(); A(); A(); A(); A()"; 8].join("; ");
         let branch = format!("{{ {steps} }}");
-        let text = format!("primitive A()[1,5]; scenario Long = {{ {branch}, {branch}, {branch}, {branch} }}");
+        let text =
+            format!("primitive A()[1,5]; scenario Long = {{ {branch}, {branch}, {branch}, {branch} }}");
         let drawn = drawn(&text);
         let bounds = drawn.drawing.bounds;
         let (mut overview, mut moves, mut places) = (Overview::default(), 0, 0);

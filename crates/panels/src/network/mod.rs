@@ -482,7 +482,7 @@ impl NetworkPanel {
         let Some((occurrence, span)) = selected.and_then(|it| Some((it, it.span?))) else { return };
         let Some(bounds) = Highlight::of(selection, network).bounds(&self.drawn.drawing) else { return };
         let end = self.view.screen_rect(panel, bounds).right_center();
-        carry::connector(ui, context, end, panel, (span, &occurrence.name));
+        carry::connector(ui, context, end, panel, (span, &network.readable(&occurrence.name)));
     }
 
     /// What is under the pointer: a shape, or a curve over the shapes.
@@ -712,7 +712,7 @@ fn show_tooltip(
                 Selection::Link(_) => "causal link: the assertion supports the requirement",
                 _ => "ordering: the first ends before the second starts",
             };
-            (selection.name(Some(network)), vec![what.to_owned()])
+            (selection.title(Some(network)), vec![what.to_owned()])
         }
     };
     response.clone().on_hover_ui_at_pointer(|ui| {

@@ -99,7 +99,8 @@ fn show_orders(
         let text = format!("{} before {}", network.use_name(ordering.first), network.use_name(ordering.then));
         let later = network.uses.get(ordering.then.index()).and_then(|used| used.owner);
         let selection = later.map_or(Selection::None, Selection::Occurrence);
-        selectable_row(ui, context, &selection, RichText::new(text).color(context.tokens.ordering), commands);
+        let text = RichText::new(network.readable(&text)).color(context.tokens.ordering);
+        selectable_row(ui, context, &selection, text, commands);
     });
 }
 

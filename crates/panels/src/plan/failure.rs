@@ -208,7 +208,7 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
                     workbench::time_text::time(member.weight),
                     workbench::state::selection::node_name(network, member.from),
                 );
-                ui.label(RichText::new(step).small().color(tokens.text_muted));
+                ui.label(RichText::new(network.readable(&step)).small().color(tokens.text_muted));
             }
             let sum = format!(
                 "The sum around the cycle is {}, which is negative.",

@@ -202,7 +202,8 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &snapshot::Plannin
     let effort = format!("{tried} tried, {}", counted(stats.conflicts, "failure"));
     ui.label(RichText::new(effort).small().color(tokens.text_muted));
     for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
-        ui.label(RichText::new(&violation.message).color(tokens.error));
+        let message = context.readable(&violation.message);
+        ui.label(RichText::new(message).color(tokens.error));
     }
     for undrivable in &planning.undrivable {
         let network = context.state.shown().and_then(|shown| shown.network.as_ref());
@@ -210,6 +211,7 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &snapshot::Plannin
             .and_then(|network| network.occurrences.get(undrivable.occurrence.index()))
             .map_or("A traverse", |occurrence| occurrence.name.as_str());
         let text = format!("{name} can't be driven {}", undrivable.reason);
+        let text = network.map_or_else(|| text.clone(), |network| network.readable(&text));
         ui.label(RichText::new(text).color(tokens.warning));
     }
 }
@@ -264,7 +266,7 @@ fn show_links(
     rows(ui, "links", plan.causal_links.len(), |ui, index| {
         let link = plan.causal_links[index];
         let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
-        let text = RichText::new(text).color(context.tokens.link);
+        let text = RichText::new(network.readable(&text)).color(context.tokens.link);
         selectable_row(ui, context, &Selection::Link(link), text, commands);
     });
 }
@@ -290,7 +292,8 @@ fn show_orderings(
         rows(ui, id, orders.len(), |ui, index| {
             let ordering = orders[index];
             let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
-            let text = RichText::new(format!("{first} before {then}")).color(color);
+            let text = network.readable(&format!("{first} before {then}"));
+            let text = RichText::new(text).color(color);
             selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
         });
     };

@@ -100,7 +100,7 @@ impl WindowTable {
 
 impl Row {
     fn name(&self, network: &Network) -> String {
-        network.event_name(self.event)
+        network.readable(&network.event_name(self.event))
     }
 }
 

@@ -124,7 +124,7 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Un
             let Some((start, end)) = bounds.filter(|_| is_condition) else { continue };
             let before = uncertainty.withdrawn.get(&occurrence.name).map_or(0.0, |it| it.probability);
             let mut percent = before * 100.0;
-            let label = ui.label(format!("Chance to withdraw {}", occurrence.name)).id;
+            let label = ui.label(format!("Chance to withdraw {}", network.readable(&occurrence.name))).id;
             let field = DragValue::new(&mut percent).range(0.0..=100.0).suffix("%").max_decimals(1);
             if ui.add(field).labelled_by(label).changed() {
                 let at = Distribution::Uniform(start.earliest, end.earliest);

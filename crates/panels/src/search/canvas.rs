@@ -663,7 +663,7 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
     let owner = |id: tpn::LabelId| {
         let label = network.labels.get(id.index());
         let owner = label.and_then(|label| network.occurrences.get(label.owner?.index()));
-        owner.map_or_else(|| network.label_name(id), |owner| owner.name.to_string())
+        network.readable(&owner.map_or_else(|| network.label_name(id), |owner| owner.name.to_string()))
     };
     // A statement that is nothing but a condition is called by that, if that tells the two apart.
     let stated = |id: tpn::LabelId| {
@@ -679,7 +679,7 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
     let user = |id: tpn::UseId| {
         let used = network.uses.get(id.index());
         let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
-        owner.map_or_else(|| network.use_name(id), |owner| owner.name.to_string())
+        network.readable(&owner.map_or_else(|| network.use_name(id), |owner| owner.name.to_string()))
     };
     match choice {
         None => "start".to_owned(),

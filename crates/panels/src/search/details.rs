@@ -185,7 +185,7 @@ fn show_changes(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
     for change in named.iter().take(MAX_CHANGES) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            let name = node_name(network, change.node);
+            let name = network.readable(&node_name(network, change.node));
             let button = egui::Button::new(RichText::new(name).small()).frame_when_inactive(false);
             if ui.add(button).clicked() {
                 commands.send(Command::Select(Selection::Node(change.node)));

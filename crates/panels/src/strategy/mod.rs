@@ -164,6 +164,7 @@ fn executives(
             duration_name(network, waiting.natures),
             time_text::short(waiting.until)
         );
+        let text = network.readable(&text);
         selectable_row(ui, context, &Selection::Node(waiting.event), RichText::new(text), commands);
     }
     match &course.next {
@@ -172,6 +173,7 @@ fn executives(
         }
         Some(next) => {
             let text = format!("next, unless an activity ends first: {}", act_text(network, next));
+            let text = network.readable(&text);
             ui.label(RichText::new(text).color(tokens.text_muted));
         }
     }

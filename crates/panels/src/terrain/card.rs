@@ -178,6 +178,7 @@ pub fn show_path(
     let title = network
         .and_then(|network| network.occurrences.get(traverse.occurrence.index()))
         .map_or("Path", |occurrence| occurrence.name.as_str());
+    let title = &network.map_or_else(|| title.to_owned(), |network| network.readable(title));
     let rows = path_rows(context, traverse, leg);
     let is_closed = show(ui, context, image, (anchor, path), title, |ui| {
         show_rows(ui, context.tokens, &rows);

@@ -83,7 +83,8 @@ pub(super) fn show(
         let response = ui.interact(area.intersect(painting.visible), id, Sense::click_and_drag());
         response.widget_info(|| {
             let side = if is_upper { "maximum" } else { "minimum" };
-            let label = format!("Change the {side} duration of {}", occurrence.name);
+            let label =
+                format!("Change the {side} duration of {}", painting.network.readable(&occurrence.name));
             WidgetInfo::slider(true, value.map_or(0.0, number), label)
         });
         if response.drag_started()

@@ -109,7 +109,7 @@ pub(super) fn show_held(ui: &Ui, painting: &Painting<'_>, pinned: &Pinned) {
     painter.vline(x, band.y_range(), Stroke::new(1.5, tokens.accent));
     let text = format!(
         "{} at {}, window {}",
-        event_name(painting.network, node),
+        painting.network.readable(&event_name(painting.network, node)),
         time_text::time(time),
         time_text::interval(window.earliest, window.latest)
     );
@@ -143,9 +143,9 @@ fn name_of(painting: &Painting<'_>, bar: &Bar, side: usize) -> String {
     match bar.occurrence {
         Some(occurrence) => {
             let end = if side == 0 { EventEnd::Start } else { EventEnd::End };
-            painting.network.event_name(EventRef { occurrence, end })
+            painting.network.readable(&painting.network.event_name(EventRef { occurrence, end }))
         }
-        None => event_name(painting.network, bar.events[side]),
+        None => painting.network.readable(&event_name(painting.network, bar.events[side])),
     }
 }
 

@@ -37,9 +37,10 @@ pub(super) fn selection(kind: LinkKind, network: &Network) -> Selection {
 pub(super) fn name(kind: LinkKind, network: &Network) -> String {
     match kind {
         LinkKind::UseOrdering(ordering) => {
-            format!("{} before {}", network.use_name(ordering.first), network.use_name(ordering.then))
+            let [first, then] = [ordering.first, ordering.then].map(|used| network.use_name(used));
+            network.readable(&format!("{first} before {then}"))
         }
-        _ => selection(kind, network).name(Some(network)),
+        _ => selection(kind, network).title(Some(network)),
     }
 }
 

@@ -646,7 +646,8 @@ fn show_connector(ui: &Ui, painting: &Painting<'_>, (row, bar): (usize, &Bar)) {
     let name = ui.painter().layout_no_wrap(bar.name.to_string(), font, Color32::PLACEHOLDER).size().x;
     let beside = if name + NAME_MARGIN > place.width() { name + NAME_MARGIN } else { 0.0 };
     let end = place.right_center() + vec2(beside, 0.0);
-    carry::connector(ui, painting.context, end, painting.visible, (span, &occurrence.name));
+    let name = painting.network.readable(&occurrence.name);
+    carry::connector(ui, painting.context, end, painting.visible, (span, &name));
 }
 
 /// What is selected can be carried to another activity; a drag of anything else moves the view.
@@ -693,11 +694,10 @@ fn respond(
     let name = match (bar.label, owner) {
         _ if bar.kind.is_of_state() => state::words(painting.network, plan, bar).join(", "),
         (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
-        // Several may have the name that is seen; what has no arguments begins with it.
-        (None, Some(owner)) if owner.activity == bar.name => owner.name.to_string(),
-        (None, Some(owner)) => format!("{}, {}", bar.name, owner.name),
+        (None, Some(owner)) => owner.name.to_string(),
         _ => bar.name.to_string(),
     };
+    let name = painting.network.readable(&name);
     theme::structure::item(response, is_selected, &format!("{name}: {}", bar::words(bar, plan)));
     if response.hovered() && context.state.hovered != selection {
         commands.send(Command::Hover(selection.clone()));
@@ -713,7 +713,7 @@ fn respond(
         if bar.label.is_none() {
             ui.label(theme::strong(bar.name.as_str()));
         }
-        let name = selection.name(Some(painting.network));
+        let name = selection.title(Some(painting.network));
         if bar.label.is_some() {
             ui.label(theme::strong(name));
         } else if name != bar.name {
@@ -721,7 +721,7 @@ fn respond(
         }
         if bar.kind.is_of_state() {
             for line in state::words(painting.network, plan, bar) {
-                ui.label(line);
+                ui.label(painting.network.readable(&line));
             }
         }
         ui.label(bar::words(bar, plan));

@@ -50,7 +50,7 @@ pub(crate) fn network_since(snapshot: &Snapshot, approved: &Subject) -> Vec<Figu
     let changes = NetworkChanges::new(&before, network, plan).changes;
     let details = changes.iter().map(|(occurrence, _)| {
         let occurrence = &network.occurrences[occurrence.index()];
-        Detail { words: occurrence.name.to_string(), nodes: vec![occurrence.start, occurrence.end] }
+        Detail { words: network.readable(&occurrence.name), nodes: vec![occurrence.start, occurrence.end] }
     });
     let caption = "“new”: not in the approved plan. Dashed, with “was”: different times in the approved plan. Crossed out: \
                    no longer in the plan.";

@@ -206,7 +206,8 @@ impl Promise {
         plan.causal_links.iter().find_map(|link| {
             let (vehicle, location, is_seen) = required_sight(network, link.ask)?;
             let (start, end) = network.interval(link.ask);
-            let is_its = line.nodes == [start, end] && line.text == sight_text(network, *link)?;
+            let is_its =
+                line.nodes == [start, end] && line.text == network.readable(&sight_text(network, *link)?);
             is_its.then(|| Self::Sees {
                 vehicle: vehicle.to_owned(),
                 location: location.clone(),

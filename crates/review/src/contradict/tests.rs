@@ -202,7 +202,8 @@ fn no_plan_relies_on_a_drive_that_takes_the_most() {
     let failure = planning.outcome.failure.as_ref().expect("it is explained");
     let told: Vec<&str> = failure.reasons.iter().map(|it| it.message.as_str()).collect();
     assert!(
-        told.iter().any(|it| it.contains("depending on the distance that is really driven, Drive#1 takes ")),
+        told.iter()
+            .any(|it| it.contains("depending on the distance that is really driven, Drive(V0, P3) takes ")),
         "{told:?}"
     );
     let (all, ..) = run(&with("87"), |_| {});
@@ -450,7 +451,7 @@ fn a_drive_that_another_event_stops_is_not_contradicted() {
             entry(at, Happening::Violation { name: stopped_by.into(), reason, is_contact: false }),
         ];
         trial.try_run(&Script::default(), &observed(&log, Ending::Stopped));
-        let line = trial.tried().find(|it| it.line.text.starts_with("Drive#1: ")).expect("it drives");
+        let line = trial.tried().find(|it| it.line.text.starts_with("Drive(B): ")).expect("it drives");
         line.verdict()
     };
     assert_ne!(of("Drive#2.end", 5), Verdict::Contradicted);

@@ -95,6 +95,7 @@ impl<'a> Meaning<'a> {
         let nodes = self.decisive(&breach);
         let stretch = told.iter().find(|it| it.from <= breach.stretch.from && breach.stretch.to <= it.to);
         let words = self.words(*stretch.unwrap_or(&breach.stretch), &breach, &nodes);
+        let words = self.network.readable(&words);
         let mut names: Vec<String> = nodes.iter().filter_map(|&(node, _)| self.owner(node)).collect();
         names.dedup();
         let outcome = if is_broken { Outcome::Broken(words) } else { Outcome::Unsure(words) };

@@ -42,7 +42,7 @@ fn what_the_plan_puts_in_order_holds() {
     broken(
         &ROVER.replace("Lower(); Drive(Rock)", "Drive(Rock); Lower()"),
         "never Drive while Mast=UP",
-        "from 3 to 14, after Drive#1.start, before Drive#1.end",
+        "from 3 to 14, after Drive(Rock).start, before Drive(Rock).end",
     );
 }
 
@@ -101,13 +101,13 @@ fn what_is_under_way_at_the_same_time_in_one_execution_only_breaks_a_rule() {
 #[test]
 fn levels_are_the_lowest_and_the_highest_of_all_executions() {
     holds(ROVER, "Battery >= 40");
-    broken(ROVER, "Battery > 40", "from 4 to 20, after Drive#1.start: Battery is 40");
+    broken(ROVER, "Battery > 40", "from 4 to 20, after Drive(Rock).start: Battery is 40");
     holds(ROVER, "Battery >= 60 at end");
     holds(ROVER, "Battery <= 70");
     holds(ROVER, "Battery >= 60 at start of Drive");
-    broken(ROVER, "Battery >= 60 at end of Drive", "from 9 to 16, with Drive#1.end: Battery is 40");
+    broken(ROVER, "Battery >= 60 at end of Drive", "from 9 to 16, with Drive(Rock).end: Battery is 40");
     holds(ROVER, "Power <= 2");
-    broken(ROVER, "Power <= 1", "from 4 to 16, after Drive#1.start: Power is 2");
+    broken(ROVER, "Power <= 1", "from 4 to 16, after Drive(Rock).start: Power is 2");
     // Twice the consumption in parallel: each alone leaves 40, both together 20.
     let two = "resource Battery 0..100 = 60; primitive Drive()[5,9] consumes Battery 20;
         primitive Charge()[1,1] produces Battery 20;

@@ -8,6 +8,7 @@ use smol_str::SmolStr;
 
 use super::bounds::Interval;
 use super::names::{Fact, Vocabulary};
+use crate::call_names::NamesOnDemand;
 use crate::network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Extent, Goal,
     Label, LabelId, Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use,
@@ -287,6 +288,7 @@ impl Builder {
             end: root.end,
             threat_gap: options.threat_gap,
             controllability: options.controllability,
+            names: NamesOnDemand::default(),
         }
     }
 }

@@ -173,6 +173,12 @@ impl Selection {
         }
     }
 
+    /// Its name for people: calls with their arguments.
+    pub fn title(&self, network: Option<&Network>) -> String {
+        let name = self.name(network);
+        network.map_or(name.clone(), |network| network.readable(&name))
+    }
+
     /// The kind of thing, as a word for programs.
     pub fn kind(&self) -> &'static str {
         match self {

@@ -12,7 +12,7 @@ pub use conflict_driven::{learned, never};
 
 /// What was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
-    match choice {
+    let words = match choice {
         None => "Initial state".to_owned(),
         Some(TreeChoice::Decision { decision, alternative }) => {
             let name = network.alternative_name(decision, alternative);
@@ -31,13 +31,15 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
             | TreeChoice::Departure(_)
             | TreeChoice::Apart),
         ) => conflict_driven::fact(network, choice),
-    }
+    };
+    network.readable(&words)
 }
 
 /// One event of a search in a sentence.
 pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
     let own = if trace.is_conflict_driven() { None } else { step_by_step(network, trace, event) };
-    own.or_else(|| conflict_driven::event(network, trace, event)).unwrap_or_else(|| plain(network, event))
+    let words = own.or_else(|| conflict_driven::event(network, trace, event));
+    network.readable(&words.unwrap_or_else(|| plain(network, event)))
 }
 
 /// What a search that makes one choice after the other says in its own way.

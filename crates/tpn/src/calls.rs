@@ -1,0 +1,58 @@
+//! What people read for the calls of a network: made from their activities and arguments.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use smol_str::SmolStr;
+
+use crate::alternative::shortened_call;
+use crate::call_names::CallNames;
+use crate::network::{Network, Occurrence, OccurrenceKind};
+
+impl CallNames {
+    /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments.
+    pub fn new(network: &Network) -> Self {
+        Self::told(network, |call| format!("{}({})", call.activity, call.arguments.join(", ")))
+    }
+
+    /// The same with arguments left out of long calls, where that leaves them distinct:
+    /// `Group-Traverse-Path(PATH1_1, …, TAI_POS)`.
+    pub fn short(network: &Network) -> Self {
+        let mut calls: BTreeMap<String, BTreeSet<&[SmolStr]>> = BTreeMap::new();
+        for call in calls_of(network) {
+            calls.entry(shortened_call(call)).or_default().insert(&call.arguments);
+        }
+        Self::told(network, |call| {
+            let short = shortened_call(call);
+            let is_distinct = calls.get(&short).is_some_and(|alike| alike.len() == 1);
+            if is_distinct { short } else { format!("{}({})", call.activity, call.arguments.join(", ")) }
+        })
+    }
+
+    fn told(network: &Network, told: impl Fn(&Occurrence) -> String) -> Self {
+        let mut counts: BTreeMap<(&SmolStr, &[SmolStr]), usize> = BTreeMap::new();
+        for call in calls_of(network) {
+            *counts.entry((&call.activity, &call.arguments)).or_default() += 1;
+        }
+        let shown = |call: &Occurrence| match call.name.rsplit_once('#') {
+            Some((_, number)) if counts[&(&call.activity, call.arguments.as_slice())] > 1 => {
+                format!("{}#{number}", told(call))
+            }
+            _ => told(call),
+        };
+        Self::of(calls_of(network).map(|call| (call.name.clone(), shown(call))).collect())
+    }
+}
+
+/// The calls that have arguments.
+fn calls_of(network: &Network) -> impl Iterator<Item = &Occurrence> {
+    network.occurrences.iter().filter(|it| {
+        matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity) && !it.arguments.is_empty()
+    })
+}
+
+impl Network {
+    /// A text with the identifiers of this network's calls replaced by what people read: see [`CallNames::short`].
+    pub fn readable(&self, text: &str) -> String {
+        self.names.get(|| CallNames::short(self)).in_text(text)
+    }
+}
