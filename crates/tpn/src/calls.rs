@@ -9,35 +9,26 @@ use crate::call_names::CallNames;
 use crate::network::{Network, Occurrence, OccurrenceKind};
 
 impl CallNames {
-    /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments.
+    /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments. Of long calls
+    /// some arguments are left out, where that leaves them distinct: `Group-Traverse-Path(PATH1_1, …, TAI_POS)`.
     pub fn new(network: &Network) -> Self {
-        Self::told(network, |call| format!("{}({})", call.activity, call.arguments.join(", ")))
-    }
-
-    /// The same with arguments left out of long calls, where that leaves them distinct:
-    /// `Group-Traverse-Path(PATH1_1, …, TAI_POS)`.
-    pub fn short(network: &Network) -> Self {
-        let mut calls: BTreeMap<String, BTreeSet<&[SmolStr]>> = BTreeMap::new();
-        for call in calls_of(network) {
-            calls.entry(shortened_call(call)).or_default().insert(&call.arguments);
-        }
-        Self::told(network, |call| {
-            let short = shortened_call(call);
-            let is_distinct = calls.get(&short).is_some_and(|alike| alike.len() == 1);
-            if is_distinct { short } else { format!("{}({})", call.activity, call.arguments.join(", ")) }
-        })
-    }
-
-    fn told(network: &Network, told: impl Fn(&Occurrence) -> String) -> Self {
+        let mut alike: BTreeMap<String, BTreeSet<&[SmolStr]>> = BTreeMap::new();
         let mut counts: BTreeMap<(&SmolStr, &[SmolStr]), usize> = BTreeMap::new();
         for call in calls_of(network) {
+            alike.entry(shortened_call(call)).or_default().insert(&call.arguments);
             *counts.entry((&call.activity, &call.arguments)).or_default() += 1;
         }
-        let shown = |call: &Occurrence| match call.name.rsplit_once('#') {
-            Some((_, number)) if counts[&(&call.activity, call.arguments.as_slice())] > 1 => {
-                format!("{}#{number}", told(call))
+        let shown = |call: &Occurrence| {
+            let short = shortened_call(call);
+            let is_distinct = alike.get(&short).is_some_and(|alike| alike.len() == 1);
+            let complete = || format!("{}({})", call.activity, call.arguments.join(", "));
+            let text = if is_distinct { short } else { complete() };
+            match call.name.rsplit_once('#') {
+                Some((_, number)) if counts[&(&call.activity, call.arguments.as_slice())] > 1 => {
+                    format!("{text}#{number}")
+                }
+                _ => text,
             }
-            _ => told(call),
         };
         Self::of(calls_of(network).map(|call| (call.name.clone(), shown(call))).collect())
     }
@@ -51,8 +42,8 @@ fn calls_of(network: &Network) -> impl Iterator<Item = &Occurrence> {
 }
 
 impl Network {
-    /// A text with the identifiers of this network's calls replaced by what people read: see [`CallNames::short`].
+    /// A text with the identifiers of this network's calls replaced by what people read: see [`CallNames::new`].
     pub fn readable(&self, text: &str) -> String {
-        self.names.get(|| CallNames::short(self)).in_text(text)
+        self.names.get(|| CallNames::new(self)).in_text(text)
     }
 }

@@ -202,7 +202,7 @@ fn a_dropped_event_moves_its_bar_and_rows_still_have_no_overlap() {
     // The handle keeps the keyboard though its bar may be in another row now.
     let end = app.json()["pinned"]["events"]["Group-Wait#1.end"].as_f64().expect("it is pinned");
     assert!(end > 416.0, "{end}");
-    let bars: Vec<egui::Rect> = ["Group-Transmit(", "Group-Wait("]
+    let bars: Vec<egui::Rect> = ["Group-Transmit(MCC, ARRIVED_TAI): ", "Group-Wait(TAI_HOLD1, TAI_HOLD2): "]
         .map(|start| app.harness.get_by(|node| node.label().is_some_and(|it| it.starts_with(start))).rect())
         .into();
     assert!(!bars[0].shrink(3.0).intersects(bars[1].shrink(3.0)), "{bars:?}");

@@ -1,5 +1,6 @@
 //! The windows and the slack of every event, the tightest first, with the slack as a bar.
 
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Pos2, Rect, Sense, TextStyle, Ui};
 use exact::Bound;
 use review::{EventReview, Section};
@@ -29,11 +30,12 @@ pub(super) fn show(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut Co
     for event in events {
         let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
         let is_selected = list.selected.contains(&event.name);
-        let name = format!("{} {}, slack {}", event.name, window_text(event), time_text(event.slack));
+        let title = list.context.readable(&event.name);
+        let name = format!("{title} {}, slack {}", window_text(event), time_text(event.slack));
         theme::structure::item(&response, is_selected, &name);
         if ui.is_rect_visible(rect) {
             row::background(ui, list.context, rect, &response, is_selected);
-            paint(ui, list, event, rect, longest, is_narrow);
+            paint(ui, list, (&title, event), rect, longest, is_narrow);
         }
         if response.clicked() {
             lines::go_to(list, Section::Events, &event.line, commands);
@@ -64,18 +66,26 @@ fn headings(ui: &mut Ui, list: &List<'_>, width: f32) {
     }
 }
 
-fn paint(ui: &Ui, list: &List<'_>, event: &EventReview, rect: Rect, longest: f64, is_narrow: bool) {
+fn paint(
+    ui: &Ui,
+    list: &List<'_>,
+    (title, event): (&str, &EventReview),
+    rect: Rect,
+    longest: f64,
+    is_narrow: bool,
+) {
     let tokens = list.context.tokens;
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let name_right =
         if is_narrow { rect.right() } else { rect.right() - BAR - 3.0 * NUMBER - 2.0 * space::M };
     let name_middle = if is_narrow { rect.top() + 11.0 } else { rect.center().y };
-    let names = ui.painter().with_clip_rect(
-        Rect::from_min_max(rect.min, Pos2::new(name_right, rect.bottom())).intersect(ui.clip_rect()),
-    );
-    let at = Pos2::new(rect.left() + row::INDENT, name_middle);
-    names.text(at, Align2::LEFT_CENTER, &event.name, body.clone(), tokens.text);
+    let left = rect.left() + row::INDENT;
+    let mut job = LayoutJob::simple_singleline(title.to_owned(), body.clone(), tokens.text);
+    job.wrap = TextWrapping::truncate_at_width(name_right - left);
+    let names = ui.painter().layout_job(job);
+    let at = Align2::LEFT_CENTER.anchor_size(Pos2::new(left, name_middle), names.size()).min;
+    ui.painter().galley(at, names, tokens.text);
     let is_tight = event.slack == Bound::ZERO;
     let slack_color = if is_tight { tokens.warning } else { tokens.text };
     let painter = ui.painter();

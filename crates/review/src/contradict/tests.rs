@@ -451,7 +451,7 @@ fn a_drive_that_another_event_stops_is_not_contradicted() {
             entry(at, Happening::Violation { name: stopped_by.into(), reason, is_contact: false }),
         ];
         trial.try_run(&Script::default(), &observed(&log, Ending::Stopped));
-        let line = trial.tried().find(|it| it.line.text.starts_with("Drive(B): ")).expect("it drives");
+        let line = trial.tried().find(|it| it.line.text.starts_with("Drive(R1, A): ")).expect("it drives");
         line.verdict()
     };
     assert_ne!(of("Drive#2.end", 5), Verdict::Contradicted);
