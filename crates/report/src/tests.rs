@@ -85,6 +85,9 @@ fn the_report_has_the_windows_the_margins_and_the_hash() {
     assert!(row_with(&page, "Ask(PATH1=OK)@Group-Traverse-Path(PATH1_1, …, TAI_POS)").contains("[0, 45]"));
     assert!(page.contains("[1, 185]"));
     assert!(page.contains(&planned(SCENARIO).review.content_hash));
+    for activity in ["Group-Traverse-Path", "Group-Transmit", "Group-Wait"] {
+        assert!(!page.contains(&format!("{activity}#")), "{activity} has an identifier");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::support;
 use egui::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use workbench::PanelKind;
 use workbench::command::Command;
@@ -292,4 +292,27 @@ fn what_is_of_an_earlier_text_is_marked_and_says_nothing_good_of_the_present_one
     app.settle();
     assert!(app.harness.query_by_label_contains("Out of date").is_none());
     app.harness.get_by_label("Verified by the independent checker.");
+}
+
+/// In files, `Group-Wait#1` is a call's identifier. Nobody has to know which of several calls that is.
+#[test]
+fn calls_are_named_by_their_arguments_in_every_workspace() {
+    for workspace in ["author", "teach", "review", "execute"] {
+        let mut app =
+            support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 1200.0]));
+        app.settle();
+        app.harness.state_mut().dispatch("view.workspace", &json!(workspace)).expect("a workspace");
+        app.settle();
+        let mut named = 0;
+        for node in app.harness.root().children_recursive() {
+            let node = node.accesskit_node();
+            for text in [node.label(), node.value(), node.description()].into_iter().flatten() {
+                named += usize::from(text.contains("Group-Wait(TAI_HOLD1, TAI_HOLD2)"));
+                for activity in ["Group-Traverse-Path", "Group-Transmit", "Group-Wait"] {
+                    assert!(!text.contains(&format!("{activity}#")), "{workspace}: {text}");
+                }
+            }
+        }
+        assert!(named > 0, "{workspace}");
+    }
 }

@@ -87,7 +87,10 @@ impl Profile {
             Some(Taker {
                 used: UseId::from_index(at),
                 occurrence: used.owner,
-                name: owner.map_or_else(|| SmolStr::new_static("a block"), |owner| owner.name.clone()),
+                name: owner.map_or_else(
+                    || SmolStr::new_static("a block"),
+                    |owner| network.readable(&owner.name).into(),
+                ),
                 change: used.change,
                 amount: used.counted(),
                 level: used.level,

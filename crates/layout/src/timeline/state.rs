@@ -123,6 +123,11 @@ fn values(network: &Network, label: &Label) -> SmolStr {
 
 /// What a bar of a state track represents, in lines: which value, who made it so, and who needs it.
 pub fn words(network: &Network, plan: &Plan, bar: &Bar) -> Vec<String> {
+    lines(network, plan, bar).iter().map(|line| network.readable(line)).collect()
+}
+
+/// The same with identifiers of calls.
+fn lines(network: &Network, plan: &Plan, bar: &Bar) -> Vec<String> {
     let Some((id, label)) = bar.label.and_then(|id| Some((id, network.labels.get(id.index())?))) else {
         return Vec::new();
     };

@@ -721,7 +721,7 @@ fn respond(
         }
         if bar.kind.is_of_state() {
             for line in state::words(painting.network, plan, bar) {
-                ui.label(painting.network.readable(&line));
+                ui.label(line);
             }
         }
         ui.label(bar::words(bar, plan));

@@ -20,9 +20,13 @@ pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<Figur
         [frame.origin_m, frame.far_corner_m()]
     });
     let frame = MapFrame::with_side(low_m, high_m, SIDE);
-    let occurrences = snapshot.network.as_deref().map_or(&[][..], |network| &network.occurrences);
-    let paths = snapshot.traverses.iter().enumerate().map(|(number, traverse)| MapPath {
-        name: occurrences.get(traverse.occurrence.index()).map_or("", |it| it.name.as_str()),
+    let name_of = |traverse: &snapshot::Traverse| {
+        let network = snapshot.network.as_deref()?;
+        Some(network.readable(&network.occurrences.get(traverse.occurrence.index())?.name))
+    };
+    let names: Vec<String> = snapshot.traverses.iter().map(|it| name_of(it).unwrap_or_default()).collect();
+    let paths = snapshot.traverses.iter().zip(&names).enumerate().map(|(number, (traverse, name))| MapPath {
+        name,
         points_m: traverse.legs.iter().flat_map(|leg| leg.points_m.iter().copied()).collect(),
         stroke: path_stroke(number),
     });

@@ -102,7 +102,7 @@ fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<
         );
     }
     for (drawing, name) in [
-        ("Timeline of the plan", "Group-Traverse-Path#1"),
+        ("Timeline of the plan", "Group-Traverse-Path(PATH1_1, …, TAI_POS)"),
         // The network writes calls with their arguments.
         ("Temporal plan network", "Group-Wait(TAI_HOLD1, TAI_HOLD2)"),
         ("Map with the paths of the plan", "TAI_POS"),

@@ -534,7 +534,7 @@ impl Builder<'_> {
         }
         let identifier = bar.occurrence.filter(|_| bar.label.is_none());
         if let Some(occurrence) = identifier.and_then(|it| self.network.occurrences.get(it.index())) {
-            self.list.entitle(occurrence.name.clone());
+            self.list.entitle(self.network.readable(&occurrence.name));
         }
         body
     }
