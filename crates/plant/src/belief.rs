@@ -52,6 +52,11 @@ impl Belief {
         Self { entries: vec![(state, BigUint::one())], total: BigUint::one(), dropped: BigUint::zero() }
     }
 
+    /// Whether it is certain of this state.
+    pub(crate) fn is_certain_of(&self, state: &State) -> bool {
+        self.dropped.is_zero() && matches!(self.entries.as_slice(), [(only, _)] if only == state)
+    }
+
     /// The belief with these relative weights; `None` when all are zero. States must not repeat.
     pub fn from_weights(entries: Vec<(State, BigUint)>) -> Option<Self> {
         Self::measured(entries, BigUint::zero(), usize::MAX)

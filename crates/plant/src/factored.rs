@@ -24,7 +24,7 @@ pub struct FactoredBelief {
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct BelievedGroup {
-    components: Vec<ComponentId>,
+    components: Arc<[ComponentId]>,
     belief: Arc<Belief>,
 }
 
@@ -32,6 +32,20 @@ impl FactoredBelief {
     /// Certainty of one state.
     pub fn certain(groups: &[Group], state: &State) -> Self {
         Self::new(groups, groups.iter().map(|group| Arc::new(Belief::certain(group.state(state)))).collect())
+    }
+
+    /// Certainty of another state: what is believed of groups that are in the same state in it is shared.
+    #[must_use]
+    pub fn certain_of(&self, groups: &[Group], state: &State) -> Self {
+        let beliefs = groups.iter().zip(&self.parts).map(|(group, part)| {
+            let own = group.state(state);
+            if part.belief.is_certain_of(&own) {
+                Arc::clone(&part.belief)
+            } else {
+                Arc::new(Belief::certain(own))
+            }
+        });
+        Self::new(groups, beliefs.collect())
     }
 
     /// The product of these beliefs, one for each group.
@@ -43,7 +57,7 @@ impl FactoredBelief {
         }
         let parts = groups.iter().zip(beliefs);
         let parts =
-            parts.map(|(group, belief)| BelievedGroup { components: group.components.clone(), belief });
+            parts.map(|(group, belief)| BelievedGroup { components: Arc::clone(&group.components), belief });
         Self { parts: parts.collect(), most_likely }
     }
 

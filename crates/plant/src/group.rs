@@ -1,6 +1,7 @@
 //! Groups of components that nothing ties together: each is a plant by itself, and is estimated apart (SPEC3 17.2).
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use smol_str::SmolStr;
 
@@ -16,7 +17,7 @@ use crate::model::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
     /// Its components in their order.
-    pub components: Vec<ComponentId>,
+    pub components: Arc<[ComponentId]>,
     /// Its variables in their order.
     pub variables: Vec<VariableId>,
     /// Its command variables in their order.
@@ -84,7 +85,7 @@ pub fn groups(model: &Model) -> Vec<Group> {
         .map(|((components, variables), commands)| {
             let part = Part { model, places: &places, counts: (components.len(), variables.len()) };
             let model = part.model(&components, &variables, &commands);
-            Group { components, variables, commands, model }
+            Group { components: components.into(), variables, commands, model }
         })
         .collect()
 }

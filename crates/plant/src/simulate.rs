@@ -158,6 +158,11 @@ impl SimulatedPlant {
         self.step(commands, injected)
     }
 
+    /// Enters a state, whatever the commands are.
+    pub fn enter_state(&mut self, state: State) -> Result<(), EstimateError> {
+        self.enter(state, &BTreeMap::new())
+    }
+
     fn enter(&mut self, mut next: State, injected: &BTreeMap<ComponentId, u8>) -> Result<(), EstimateError> {
         for (&component, &mode) in injected {
             next.set_mode(component, mode);

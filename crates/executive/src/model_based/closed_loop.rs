@@ -249,6 +249,11 @@ impl ClosedLoop {
         self.plant.state()
     }
 
+    /// What the programs know of the plant.
+    pub const fn knowledge(&self) -> Knowledge {
+        self.knowledge
+    }
+
     /// What is believed; after a step that nothing explains, what was believed before.
     pub const fn belief(&self) -> &FactoredBelief {
         &self.believed.belief
@@ -370,9 +375,8 @@ impl ClosedLoop {
     }
 
     /// Brings the plant into a state; an error if its modes contradict each other.
-    pub(super) fn enter(&mut self, state: &State, commands: &Commands) -> Result<(), EstimateError> {
-        let all = state.0.iter().enumerate().map(|(at, mode)| (ComponentId(at as u32), *mode));
-        self.plant.step(commands, &all.collect())
+    pub(super) fn enter(&mut self, state: State) -> Result<(), EstimateError> {
+        self.plant.enter_state(state)
     }
 
     /// Updates the belief by an observation, and moves the programs on by it. Choices that they reach stay open.
@@ -387,7 +391,7 @@ impl ClosedLoop {
     ) -> Result<Learned, EstimateError> {
         let asked: Vec<Vec<(TestId, Formula)>> = programs.iter().map(|program| program.asked()).collect();
         let update = match self.knowledge {
-            Knowledge::Perfect => BeliefUpdate::certain(system, self.plant.state()),
+            Knowledge::Perfect => BeliefUpdate::certain(system, &self.believed, self.plant.state()),
             Knowledge::Estimated => {
                 let thresholds: Vec<Threshold<'_>> = programs
                     .iter()

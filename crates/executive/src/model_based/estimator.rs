@@ -80,6 +80,11 @@ impl Believed {
         Self::initial(FactoredBelief::certain(&system.groups, state))
     }
 
+    /// Certainty of another state.
+    fn certain_of(&self, system: &System, state: &State) -> Self {
+        Self::initial(self.belief.certain_of(&system.groups, state))
+    }
+
     /// What is believed before the first step.
     fn initial(belief: FactoredBelief) -> Self {
         let histories = belief.beliefs().map(|belief| History { complete: Arc::clone(belief), since: None });
@@ -114,8 +119,8 @@ pub(super) struct BeliefUpdate {
 
 impl BeliefUpdate {
     /// The update of programs that know the state.
-    pub(super) fn certain(system: &System, state: &State) -> Self {
-        let believed = Some(Believed::certain(system, state));
+    pub(super) fn certain(system: &System, before: &Believed, state: &State) -> Self {
+        let believed = Some(before.certain_of(system, state));
         Self { believed, outcome: StepOutcome::Explained, is_uncertain: false, conflicts: Vec::new() }
     }
 }

@@ -11,8 +11,8 @@ use exact::Rational;
 use hca::{ChosenBy, Standing, StepObserver, locks};
 use plant::simulate::observation_of;
 use plant::{
-    Belief, Commands, ComponentId, EstimateError, FactoredBelief, Formula, Known, Observation, Situation,
-    State, Target, observations, targets,
+    Belief, ComponentId, EstimateError, FactoredBelief, Formula, Known, Observation, Situation, State,
+    Target, observations, targets,
 };
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -149,7 +149,7 @@ impl Chooser {
             *self = Self::default();
         }
         let components = groups.iter().filter_map(|at| system.groups.get(*at));
-        let components = components.flat_map(|group| &group.components).copied().collect();
+        let components = components.flat_map(|group| group.components.iter()).copied().collect();
         let (program, plant) = (ProgramExecution::new(system), ClosedLoop::new(system, estimator, None));
         let mut work = Work { chooser: self, system, estimator, program, plant, components };
         let made = work.choose(&key.0, &belief.shares_of(&groups, MAX_STATES));
@@ -293,7 +293,7 @@ impl Work<'_> {
                 after.set_mode(*id, target.mode);
             }
             // Modes that contradict each other do not occur together.
-            if self.plant.enter(&after, &Commands(vec![0; next.commands.0.len()])).is_ok() {
+            if self.plant.enter(after.clone()).is_ok() {
                 total += probability;
                 self.learn(standing, &after, probability, &mut ways);
             }

@@ -199,7 +199,7 @@ impl<'program> PlantSide<'program> {
             system,
             estimator,
             program: ProgramExecution::new(system),
-            components: of.flat_map(|group| &group.components).copied().collect(),
+            components: of.flat_map(|group| group.components.iter()).copied().collect(),
             known: states.iter().cloned().collect(),
             states,
             commands: Vec::new(),

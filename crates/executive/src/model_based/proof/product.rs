@@ -194,6 +194,8 @@ pub(super) struct Explorer {
     groups: BTreeSet<usize>,
     components: BTreeSet<ComponentId>,
     fired: Fired,
+    /// By state, what is observed in it without chance, and all that may be observed; `None` where that is too much.
+    observed: HashMap<State, (Observation, Option<Vec<Observation>>)>,
     /// Whether not everything that can happen was followed.
     pub(super) has_cut: bool,
 }
@@ -202,7 +204,7 @@ impl Explorer {
     pub(super) fn new(system: &Arc<System>, conditions: Vec<Condition>) -> Self {
         let mut groups = system.groups_used();
         groups.extend(conditions.iter().flat_map(|condition| system.groups_of(&condition.formula)));
-        let of = |at: &usize| system.groups.get(*at).map_or(&[][..], |group| group.components.as_slice());
+        let of = |at: &usize| system.groups.get(*at).map_or(&[][..], |group| &*group.components);
         let components = groups.iter().flat_map(of).copied().collect();
         Self {
             system: Arc::clone(system),
@@ -212,6 +214,7 @@ impl Explorer {
             groups,
             components,
             fired: Fired::default(),
+            observed: HashMap::new(),
             has_cut: false,
         }
     }
@@ -267,7 +270,7 @@ impl Explorer {
             let next = State(picked.iter().map(|target| target.mode).collect());
             let mut closed = closed.clone();
             // Modes that contradict each other do not occur together.
-            if closed.enter(&next, commands).is_err() {
+            if closed.enter(next).is_err() {
                 continue;
             }
             let mut by = Move::default();
@@ -305,10 +308,12 @@ impl Explorer {
     fn seen(&mut self, entered: &Entered, most_faults: u32) -> Vec<Seen> {
         let model = &self.system.model;
         let state = entered.closed.true_state();
-        let shown = observation_of(model, state);
-        let possible = observations(model, state, &self.components, MAX_OBSERVATIONS);
+        let (shown, possible) = self.observed.entry(state.clone()).or_insert_with(|| {
+            let possible = observations(model, state, &self.components, MAX_OBSERVATIONS);
+            (observation_of(model, state), possible)
+        });
         self.has_cut |= possible.is_none();
-        let possible = possible.unwrap_or_else(|| vec![shown.clone()]);
+        let possible = possible.clone().unwrap_or_else(|| vec![shown.clone()]);
         let count = possible.len() as u64;
         let mut all: Vec<Seen> = possible
             .into_iter()
@@ -399,6 +404,9 @@ impl Explorer {
 
     /// Whether each condition holds in a state with this observation.
     fn judge(&self, state: &State, truth: &Observation) -> Vec<Judged> {
+        if self.conditions.is_empty() {
+            return Vec::new();
+        }
         let mut situation = Situation::new(&self.system.model, state, truth);
         let judged = self.conditions.iter().map(|condition| {
             if situation.entails(&condition.formula) {
@@ -414,8 +422,10 @@ impl Explorer {
 
     /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
     pub(super) fn key(&self, way: &Way, faults_left: u32) -> Key {
+        // Whoever knows the modes believes nothing else.
+        let is_estimated = way.closed.knowledge() == Knowledge::Estimated;
         let beliefs = way.closed.belief().beliefs().enumerate();
-        let beliefs = beliefs.filter(|(at, _)| self.groups.contains(at));
+        let beliefs = beliefs.filter(|(at, _)| is_estimated && self.groups.contains(at));
         let state = way.closed.true_state();
         Key {
             standing: way.standing.clone(),
