@@ -466,7 +466,7 @@ fn the_report_is_written_with_the_review_that_is_shown() {
     let page = String::from_utf8(bytes).expect("UTF-8");
     assert!(page.contains(review(&app)["hash"].as_str().expect("a hash")));
     assert!(page.contains("Ada &lt;A&gt;"));
-    assert!(page.contains("<svg") && page.contains("Group-Traverse-Path#1"));
+    assert!(page.contains("<svg") && page.contains("Group-Traverse-Path(PATH1_1, …, TAI_POS)"));
 }
 
 #[test]
