@@ -7,7 +7,7 @@ mod windows;
 use egui::{RichText, ScrollArea, Ui};
 use theme::icon::{self, Icon};
 use theme::space;
-use tpn::{Network, Plan};
+use tpn::{LabelId, Network, Plan};
 use workbench::command::{Command, CommandSender};
 use workbench::state::{Selection, Status};
 
@@ -252,6 +252,19 @@ fn show_choices(
     });
 }
 
+/// Whose condition an interval is: an activity, or the assertion that is written.
+fn owner(network: &Network, label: LabelId) -> String {
+    let owner = network.labels.get(label.index()).and_then(|it| network.occurrences.get(it.owner?.index()));
+    owner.map_or_else(|| "the mission".to_owned(), |owner| network.readable(&owner.name))
+}
+
+/// A condition with its owner; an assertion that is written says it itself.
+fn condition(network: &Network, label: LabelId) -> String {
+    let text = network.labels.get(label.index()).map_or("", |it| &it.text);
+    let owner = owner(network, label);
+    if owner.contains(text) { owner } else { format!("{text} of {owner}") }
+}
+
 fn show_links(
     ui: &mut Ui,
     context: &Context<'_>,
@@ -265,8 +278,9 @@ fn show_links(
     section(ui, context, "Causal links", "each requirement with the assertion that supports it");
     rows(ui, "links", plan.causal_links.len(), |ui, index| {
         let link = plan.causal_links[index];
-        let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
-        let text = RichText::new(network.readable(&text)).color(context.tokens.link);
+        let condition = network.labels.get(link.ask.index()).map_or("", |label| &label.text);
+        let text = format!("{condition}: {} ← {}", owner(network, link.ask), owner(network, link.tell));
+        let text = RichText::new(text).color(context.tokens.link);
         selectable_row(ui, context, &Selection::Link(link), text, commands);
     });
 }
@@ -291,9 +305,8 @@ fn show_orderings(
     let mut list = |ui: &mut Ui, id: &str, orders: &[tpn::Ordering], color: egui::Color32| {
         rows(ui, id, orders.len(), |ui, index| {
             let ordering = orders[index];
-            let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
-            let text = network.readable(&format!("{first} before {then}"));
-            let text = RichText::new(text).color(color);
+            let [first, then] = [ordering.first, ordering.then].map(|label| condition(network, label));
+            let text = RichText::new(format!("{first} before {then}")).color(color);
             selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
         });
     };
