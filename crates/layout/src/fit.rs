@@ -34,8 +34,7 @@ const MIN_ZOOM: f64 = 0.8;
 /// Networks with so many events at most are small, and made so much smaller before anything is put behind a box.
 const SMALL: usize = 60;
 const SMALL_ZOOMS: [f64; 5] = [MIN_ZOOM, 0.65, 0.5, 0.42, 0.35];
-/// And less is written before that, and names are cut to so many points of the screen.
-const LONGEST_NAME: f64 = 88.0;
+/// And less is written before that.
 const SHORTENED: [Written; 3] = [Written::Everything, Written::Short, Written::Names];
 /// And its texts are at least so large then, in points of the screen.
 pub const MIN_TEXT: f64 = 11.0;
@@ -81,7 +80,7 @@ pub fn fitted(
     let is_small = focus.is_none() && network.nodes.len() <= SMALL;
     for written in SHORTENED {
         for zoom in SMALL_ZOOMS.into_iter().filter(|_| is_small) {
-            let brief = options.brief(MIN_TEXT / zoom).shortened(written, LONGEST_NAME / zoom);
+            let brief = options.brief(MIN_TEXT / zoom).shortened(written, zoom);
             let fitter = Fitter::new(network, &contents, &brief, room, measure, zoom);
             if let Some(found) = fitter.tried(&Detail::default()) {
                 return fitter.drawn(&found);

@@ -34,6 +34,9 @@ pub struct Options {
     pub window_width: f64,
 }
 
+/// Names are cut to so many points of the screen where less is written.
+const SHORT_NAME: f64 = 88.0;
+
 /// How much is written at arcs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
@@ -81,10 +84,10 @@ impl Options {
         }
     }
 
-    /// The same with names of at most `longest`, and with no more written than `written`.
-    pub(crate) fn shortened(&self, written: Written, longest: f64) -> Self {
-        let longest_name = if written == Written::Everything { self.longest_name } else { longest };
-        Self { written, longest_name, ..self.clone() }
+    /// The same for a drawing at this zoom with no more written than `written`.
+    pub(crate) fn shortened(&self, written: Written, zoom: f64) -> Self {
+        let longest = if written == Written::Everything { self.longest_name } else { SHORT_NAME };
+        Self { written, longest_name: longest / zoom, ..self.clone() }
     }
 }
 
