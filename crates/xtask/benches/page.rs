@@ -272,7 +272,7 @@ fn open_map(tab: &Tab, side: usize) -> Result<()> {
         map.push((100.0 + 50.0 * (row / 90.0).sin() * (column / 70.0).cos()) as u8);
     }
     tab.drop_file("hills.pgm", &map)?;
-    wait_for(tab, "enroute.state().toasts.some((toast) => toast.includes('hills.pgm is a map'))")?;
+    wait_for(tab, "enroute.state().toasts.some((toast) => toast.includes(' cells'))")?;
     let far = 10 * side - 200;
     let text = format!(
         "terrain \"hills.pgm\" cell 10;
