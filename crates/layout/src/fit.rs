@@ -81,9 +81,14 @@ pub fn fitted(
     for written in SHORTENED {
         for zoom in SMALL_ZOOMS.into_iter().filter(|_| is_small) {
             let brief = options.brief(MIN_TEXT / zoom).shortened(written, zoom);
-            let fitter = Fitter::new(network, &contents, &brief, room, measure, zoom);
-            if let Some(found) = fitter.tried(&Detail::default()) {
-                return fitter.drawn(&found);
+            // What is left of the room tells calls of one activity apart.
+            let with_arguments = Options { arguments: options.arguments, ..brief.clone() };
+            let drawn = |options: &Options| {
+                let fitter = Fitter::new(network, &contents, options, room, measure, zoom);
+                fitter.tried(&Detail::default()).map(|found| fitter.drawn(&found))
+            };
+            if let Some(drawing) = drawn(&brief) {
+                return drawn(&with_arguments).unwrap_or(drawing);
             }
         }
     }
