@@ -29,26 +29,37 @@ type Reference = fn(&Network) -> Option<Vec<Key>>;
 
 #[test]
 fn conditions_are_planned_exactly() {
-    compare_all("conditions", small_mission, conflicts, all_conflicts);
+    compare_plans("conditions", small_mission, conflicts, all_conflicts);
 }
 
 #[test]
 fn crowded_missions_are_planned_exactly() {
-    compare_all("crowded", crowded_mission, conflicts, all_conflicts);
+    compare_plans("crowded", crowded_mission, conflicts, all_conflicts);
 }
 
 #[test]
 fn states_are_planned_exactly() {
-    compare_all("states", |seed| lasting_mission(seed, Kind::STATES), sides, all_sides);
+    compare_plans("states", |seed| lasting_mission(seed, Kind::STATES), sides, all_sides);
 }
 
-/// Compares [`MISSIONS`] missions; all must agree, and many must be decided by the environment.
-#[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
-fn compare_all(
+/// Compares [`MISSIONS`] missions plan by plan.
+fn compare_plans(
     what: &str,
     mission: fn(u64) -> String,
     order: fn(&Network, &Plan) -> Vec<(u32, u32)>,
     reference: Reference,
+) {
+    compare_all(what, MISSIONS, MISSIONS / 12, &|seed| compare(&mission(seed), seed, order, reference));
+}
+
+/// Compares so many missions; all must agree, and more than `least_decisive` must be decided by the environment. `compare`
+/// says how many plans one has with nature and without, if its reference finishes.
+#[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
+pub fn compare_all(
+    what: &str,
+    missions: u64,
+    least_decisive: u64,
+    compare: &(dyn Fn(u64) -> Result<Option<(usize, usize)>, String> + Sync),
 ) {
     let (feasible, decisive) = (AtomicU64::new(0), AtomicU64::new(0));
     let disagreements = Mutex::new(Vec::new());
@@ -57,9 +68,8 @@ fn compare_all(
             let (feasible, decisive, disagreements) = (&feasible, &decisive, &disagreements);
             scope.spawn(move || {
                 let (mut seed, mut compared) = (worker, 0);
-                while compared < MISSIONS / 2 {
-                    let text = mission(seed);
-                    match compare(&text, seed, order, reference) {
+                while compared < missions / 2 {
+                    match compare(seed) {
                         Ok(Some((plans, ordinary))) => {
                             feasible.fetch_add(u64::from(plans > 0), Ordering::Relaxed);
                             decisive.fetch_add(u64::from(plans < ordinary), Ordering::Relaxed);
@@ -79,12 +89,12 @@ fn compare_all(
     });
     let (feasible, decisive) = (feasible.into_inner(), decisive.into_inner());
     println!(
-        "{what}: {MISSIONS} missions compared: {feasible} with plans, nature excludes plans of {decisive}"
+        "{what}: {missions} missions compared: {feasible} with plans, nature excludes plans of {decisive}"
     );
     let disagreements = disagreements.into_inner().expect("no thread panics");
     let shown = &disagreements[..disagreements.len().min(3)];
     assert!(disagreements.is_empty(), "{} missions differ, such as {shown:#?}", disagreements.len());
-    assert!(feasible > MISSIONS / 8 && decisive > MISSIONS / 12, "the missions are not mixed");
+    assert!(feasible > missions / 8 && decisive > least_decisive, "the missions are not mixed");
 }
 
 /// How many plans the mission has with nature and without, if the reference finishes and planning agrees with it.

@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 
 /// Readable names for texts in which calls are identifiers: calls with their arguments (SPEC 17).
 #[derive(Clone, Debug, Default)]
-pub struct CallNames {
+pub(crate) struct CallNames {
     by_identifier: BTreeMap<SmolStr, String>,
 }
 
@@ -18,7 +18,7 @@ impl CallNames {
     }
 
     /// The text with its identifiers of calls replaced by their readable names.
-    pub fn in_text(&self, text: &str) -> String {
+    pub(crate) fn in_text(&self, text: &str) -> String {
         let mut shown = String::with_capacity(text.len());
         let mut rest = text;
         while let Some(at) = rest.find('#') {

@@ -11,7 +11,7 @@ use crate::network::{Network, Occurrence, OccurrenceKind};
 impl CallNames {
     /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments. Of long calls
     /// some arguments are left out, where that leaves them distinct: `Group-Traverse-Path(PATH1_1, …, TAI_POS)`.
-    pub fn new(network: &Network) -> Self {
+    fn new(network: &Network) -> Self {
         let mut alike: BTreeMap<String, BTreeSet<&[SmolStr]>> = BTreeMap::new();
         let mut counts: BTreeMap<(&SmolStr, &[SmolStr]), usize> = BTreeMap::new();
         for call in calls_of(network) {
@@ -42,7 +42,8 @@ fn calls_of(network: &Network) -> impl Iterator<Item = &Occurrence> {
 }
 
 impl Network {
-    /// A text with the identifiers of this network's calls replaced by what people read: see [`CallNames::new`].
+    /// A text with the identifiers of this network's calls replaced by what people read: `Visit#3` becomes
+    /// `Visit(S[3], RIDGE)`.
     pub fn readable(&self, text: &str) -> String {
         self.names.get(|| CallNames::new(self)).in_text(text)
     }

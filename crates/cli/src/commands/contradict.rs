@@ -14,7 +14,6 @@ use review::{FlightRules, Section, review};
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 use tpn::Network;
-use tpn::call_names::CallNames;
 use tpn::plan_json::plan_from_json;
 
 use crate::commands::report::read_rules;
@@ -99,7 +98,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let tried: Vec<&Tried> = trial.tried().collect();
     let is_contradicted = tried.iter().any(|it| it.verdict() == Verdict::Contradicted);
     match format {
-        Format::Text => print_text(&CallNames::new(&evaluated.planned.network).in_text(&table(&tried)))?,
+        Format::Text => print_text(&evaluated.planned.network.readable(&table(&tried)))?,
         Format::Json => {
             let body = json!({ "seed": seed, "items": items_json(&tried) });
             print_json(&document("contradict", &snapshot.problems, body))?;

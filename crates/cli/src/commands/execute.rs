@@ -10,7 +10,6 @@ use executive::{Observations, Progress, Waiting};
 use mission::Manner;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
-use tpn::call_names::CallNames;
 use tpn::{Network, Plan, Window};
 
 use crate::deadline::TimeLimit;
@@ -66,9 +65,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&document("execute", &problems, progress_json(network, &progress)))?;
         }
         Format::Text => {
-            let calls = CallNames::new(network);
-            let text = progress_text(network, &plan, &progress, &calls);
-            print_text(&calls.in_text(&text))?;
+            let text = progress_text(network, &plan, &progress);
+            print_text(&network.readable(&text))?;
         }
     }
     Ok(exit(if is_consistent { YES } else { NO }))
@@ -129,12 +127,12 @@ fn progress_json(network: &Network, progress: &Progress) -> Value {
     }
 }
 
-fn progress_text(network: &Network, plan: &Plan, progress: &Progress, calls: &CallNames) -> String {
+fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String {
     match progress {
         Progress::Consistent(windows, waits) => {
             let named = named_windows(network, windows);
             let before = named_windows(network, &plan.windows);
-            let read: Vec<String> = named.keys().map(|name| calls.in_text(name)).collect();
+            let read: Vec<String> = named.keys().map(|name| network.readable(name)).collect();
             let shown = column(read.iter().map(String::as_str));
             let lines = named.iter().zip(&shown).map(|((name, window), shown)| {
                 let changed = if before.get(name) == Some(window) { "" } else { "  changed" };

@@ -16,7 +16,6 @@ use rmpl::files::Files;
 use serde_json::{Value, json};
 use snapshot::paths_json::{separation_violations_json, traverses_json};
 use snapshot::{Planning, Problem};
-use tpn::call_names::CallNames;
 use tpn::{Levels, Network, Supply};
 
 use crate::commands::held_rules::HeldRules;
@@ -321,38 +320,38 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
             message.map(|message| format!("{message}\n")).unwrap_or_default()
         }
     };
-    let names = CallNames::new(&planned.network);
+    let readable = |text: &str| planned.network.readable(text);
     let count = all_plans(planned).count();
     for ((network, plan), number) in all_plans(planned).zip(1..) {
         if count > 1 {
             text.push_str(&format!("plan {number} of {count}\n"));
         }
-        text.push_str(&names.in_text(&plan_text(network, plan, &names)));
+        text.push_str(&readable(&plan_text(network, plan)));
     }
     if let Some(verdict) = &planned.planning.verdict {
         if verdict.valid {
             text.push_str("verified by the independent checker\n");
         }
         for violation in &verdict.violations {
-            text.push_str(&format!("NOT VALID: {}\n", names.in_text(&violation.message)));
+            text.push_str(&format!("NOT VALID: {}\n", readable(&violation.message)));
         }
     }
     if let Some(failure) = &outcome.failure {
-        text.push_str(&failure_text(failure, mission, &planned.network, &names));
+        text.push_str(&failure_text(failure, mission, &planned.network));
         for label in planned.planning.ways_out() {
-            text.push_str(&names.in_text(&format!("fix: {label}\n")));
+            text.push_str(&readable(&format!("fix: {label}\n")));
         }
     }
     for undrivable in &planned.planning.undrivable {
         let name = &planned.network.occurrences[undrivable.occurrence.index()].name;
-        text.push_str(&names.in_text(&format!("{name} can't be driven {}\n", undrivable.reason)));
+        text.push_str(&readable(&format!("{name} can't be driven {}\n", undrivable.reason)));
     }
     for left_out in &planned.planning.left_out {
         let taken = |choice: &tpn::Choice| {
             format!("{} = {}", Network::decision_name(choice.decision), choice.alternative)
         };
         let choices: Vec<String> = left_out.choices.iter().map(taken).collect();
-        let reason = names.in_text(&left_out.reason);
+        let reason = readable(&left_out.reason);
         text.push_str(&format!("left out  {}: {reason}\n", choices.join(", ")));
     }
     text.push_str(&stats_text(outcome));
@@ -362,7 +361,7 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
 /// The text tells so many orders of conditions; what excludes each other may be ordered in a square of ways.
 const MAX_ORDERS_TOLD: usize = 200;
 
-fn plan_text(network: &Network, plan: &tpn::Plan, names: &CallNames) -> String {
+fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     let mut text = String::new();
     if !plan.choices.is_empty() {
         let choices: Vec<String> = plan
@@ -426,7 +425,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan, names: &CallNames) -> String {
     for (node, window) in network.nodes.iter().zip(&plan.windows) {
         let Some(window) = window else { continue };
         for &event in node.events.iter().filter(|&&event| plan.has_event(network, event)) {
-            rows.push((window.earliest, window.latest, names.in_text(&network.event_name(event))));
+            rows.push((window.earliest, window.latest, network.readable(&network.event_name(event))));
         }
     }
     rows.sort();
@@ -437,14 +436,14 @@ fn plan_text(network: &Network, plan: &tpn::Plan, names: &CallNames) -> String {
     text
 }
 
-fn failure_text(failure: &Failure, mission: &Opened, network: &Network, names: &CallNames) -> String {
+fn failure_text(failure: &Failure, mission: &Opened, network: &Network) -> String {
     let source = &*mission.source;
     let (lines, files) = (LineIndex::new(source), Files::of(source));
     let mut text = String::new();
     for reason in &failure.reasons {
-        text.push_str(&format!("{} ({})\n", names.in_text(&reason.message), reason.kind.name()));
+        text.push_str(&format!("{} ({})\n", network.readable(&reason.message), reason.kind.name()));
         for line in reason.failing_run_in_words(network) {
-            text.push_str(&format!("  {}\n", names.in_text(&line)));
+            text.push_str(&format!("  {}\n", network.readable(&line)));
         }
         for span in &reason.spans {
             let place = files.line_column(source, &lines, span.start);

@@ -8,7 +8,6 @@ use review::flight_rule::proof::{Counterexample, Proven, Verdict};
 use review::{FlightRules, MissionRule};
 use serde_json::{Value, json};
 use tpn::Choice;
-use tpn::call_names::CallNames;
 
 use crate::commands::prove::count;
 use crate::commands::report::read_rules;
@@ -64,7 +63,7 @@ pub(super) fn run(call: &Call<'_>, deadline: Deadline) -> anyhow::Result<ExitCod
         }
         Format::Text => {
             print_problems(&mission.name, &mission.source, &problems)?;
-            print_text(&CallNames::new(&evaluated.planned.network).in_text(&text(&proven)))?;
+            print_text(&evaluated.planned.network.readable(&text(&proven)))?;
             if is_undecided && deadline.is_over() {
                 return Err(TimeIsUp(Undecided::Proof).into());
             }

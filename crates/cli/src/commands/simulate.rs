@@ -10,7 +10,6 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use snapshot::{DriveFrame, Problem, SimulatedDrive};
 use tpn::Network;
-use tpn::call_names::CallNames;
 
 use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
@@ -84,11 +83,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let Ran { outcome, drives, .. } = outcome?;
     let drive = |drive| drive_json(drive, &evaluated.network, &evaluated.compiled.program);
-    let names = CallNames::new(&evaluated.network);
     match args.options.format {
         Format::Text => {
             let log: String = outcome.log.iter().map(line).collect();
-            print_text(&names.in_text(&log))?;
+            print_text(&evaluated.network.readable(&log))?;
         }
         Format::Json => {
             let mut body = json!({
@@ -106,7 +104,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(file) = &args.state {
         let saved = SavedState::at_end(&outcome, &drives, &evaluated.compiled.program);
         let saved = saved.map_err(|reason| {
-            anyhow::anyhow!("cannot write a state to {}: {}", file.display(), names.in_text(&reason))
+            anyhow::anyhow!(
+                "cannot write a state to {}: {}",
+                file.display(),
+                evaluated.network.readable(&reason)
+            )
         })?;
         save(file, &format!("{}\n", serde_json::to_string_pretty(&saved)?))?;
     }

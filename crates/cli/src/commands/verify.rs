@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use mission::{Compiled, Manner};
 use serde_json::{Value, json};
-use tpn::call_names::CallNames;
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
 
@@ -73,7 +72,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             for violation in &violations {
                 text.push_str(&format!("  {}\n", violation["message"].as_str().unwrap_or("")));
             }
-            print_text(&CallNames::new(network).in_text(&text))?;
+            print_text(&network.readable(&text))?;
         }
     }
     Ok(exit(if is_valid { YES } else { NO }))

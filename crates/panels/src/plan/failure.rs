@@ -13,6 +13,7 @@ use workbench::state::editor::EditorCommand;
 
 use crate::Context;
 use crate::plan::section;
+use crate::review::capital::sentence;
 
 /// Shows why there is no plan.
 pub(crate) fn show(
@@ -23,11 +24,12 @@ pub(crate) fn show(
     commands: &mut CommandSender,
 ) {
     let tokens = context.tokens;
-    let verdict = match planning.outcome.status {
-        Status::Plan | Status::NoPlan => "This mission has no plan.",
-        Status::Limit if planning.undrivable.is_empty() => "Planning was stopped before it found an answer.",
-        Status::Limit => "No plan was found, but there may be one in which vehicles stop elsewhere.",
-        Status::Error => "A time in this mission is too large to represent exactly.",
+    let verdict = match planning.undecided() {
+        Some(why) => format!("{}.", sentence(why)),
+        None if planning.outcome.status == Status::Error => {
+            "A time in this mission is too large to represent exactly.".to_owned()
+        }
+        None => "This mission has no plan.".to_owned(),
     };
     ui.horizontal(|ui| {
         icon::label(ui, Icon::Error, tokens.error);

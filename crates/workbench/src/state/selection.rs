@@ -176,7 +176,7 @@ impl Selection {
     /// Its name for people: calls with their arguments.
     pub fn title(&self, network: Option<&Network>) -> String {
         let name = self.name(network);
-        network.map_or(name.clone(), |network| network.readable(&name))
+        if let Some(network) = network { network.readable(&name) } else { name }
     }
 
     /// The kind of thing, as a word for programs.

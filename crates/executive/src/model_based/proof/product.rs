@@ -422,7 +422,7 @@ impl Explorer {
 
     /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
     pub(super) fn key(&self, way: &Way, faults_left: u32) -> Key {
-        // Whoever knows the modes believes nothing else.
+        // With perfect knowledge, the modes say what is believed.
         let is_estimated = way.closed.knowledge() == Knowledge::Estimated;
         let beliefs = way.closed.belief().beliefs().enumerate();
         let beliefs = beliefs.filter(|(at, _)| is_estimated && self.groups.contains(at));
