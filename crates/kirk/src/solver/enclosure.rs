@@ -147,6 +147,8 @@ impl<'a> Inside<'a> {
 
     /// What holds in the block, for all durations of its open choices. `None` if that is too much.
     fn networks(&self) -> Option<Vec<Enclosed>> {
+        let open = self.durations_of_open_choices()?;
+        let links = if self.enclosing.has_links(self.block) { self.possible_links()? } else { Vec::new() };
         let mut network = Enclosed { points: BTreeMap::new(), stn: Stn::new(0) };
         let (start, end) = self.structure.ends(self.block);
         let (start, end) = (network.point(start), network.point(end));
@@ -156,12 +158,7 @@ impl<'a> Inside<'a> {
             network.bound(arc.from, arc.to, (arc.lower, arc.upper));
         }
         let mut networks = vec![network];
-        for &decision in &self.within.open {
-            let (from, to, ..) = self.structure.initial_bounds(decision);
-            let durations = self.structure.durations(decision)?;
-            if networks.len() * durations.len() > MAX_NETWORKS {
-                return None;
-            }
+        for ((from, to), durations) in open {
             let longer = networks.iter().flat_map(|network| {
                 durations.iter().map(move |&duration| {
                     let mut network = network.clone();
@@ -171,7 +168,6 @@ impl<'a> Inside<'a> {
             });
             networks = longer.collect();
         }
-        let links = if self.enclosing.has_links(self.block) { self.possible_links()? } else { Vec::new() };
         let mut settled = Vec::with_capacity(2 * networks.len());
         for mut network in networks {
             let order: Vec<PointId> = network.points.values().copied().collect();
@@ -198,6 +194,22 @@ impl<'a> Inside<'a> {
             settled.extend([in_short, network]);
         }
         Some(settled)
+    }
+
+    /// The ends of each open choice, and the durations that it may have. `None` if there are too many together.
+    fn durations_of_open_choices(&self) -> Option<Vec<(Ends, Vec<(i64, i64)>)>> {
+        let mut num_networks = 1;
+        let mut open = Vec::with_capacity(self.within.open.len());
+        for &decision in &self.within.open {
+            let durations = self.structure.durations(decision)?;
+            num_networks *= durations.len();
+            if num_networks > MAX_NETWORKS {
+                return None;
+            }
+            let (from, to, ..) = self.structure.initial_bounds(decision);
+            open.push(((from, to), durations));
+        }
+        Some(open)
     }
 
     /// More than all that the mission bounds.
