@@ -470,6 +470,6 @@ fn stats_text(outcome: &Outcome) -> String {
         counted(stats.decisions, "decision"),
         stats.expanded,
         counted(stats.backtracks, "backtrack"),
-        counted(stats.conflicts, "conflict")
+        counted(stats.conflicts, "failure")
     )
 }
