@@ -5,6 +5,7 @@ mod deadline;
 mod diagnostics;
 mod ground;
 mod input;
+mod number;
 mod opened;
 mod output;
 mod save;

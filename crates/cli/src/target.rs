@@ -7,13 +7,14 @@ use exact::{Bound, Time};
 use snapshot::Goal;
 
 use crate::deadline::TimeLimit;
+use crate::number::seed;
 use crate::output::Format;
 
 /// How commands plan and answer that need a plan with its paths.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct PlanOptions {
     /// Seed for path planning.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = seed)]
     pub seed: u64,
     #[command(flatten)]
     pub time_limit: TimeLimit,

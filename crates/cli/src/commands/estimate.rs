@@ -14,6 +14,7 @@ use snapshot::Problem;
 use super::run::probability_json;
 use crate::diagnostics::print_problems;
 use crate::input::{read_control, read_json};
+use crate::number::positive_number;
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// The search for likely states gives up after this many nodes.
@@ -36,7 +37,7 @@ pub struct Args {
     #[arg(long, value_name = "O.json")]
     observations: PathBuf,
     /// Find only the K most likely states [default: all].
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = positive_number)]
     k: Option<u32>,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]

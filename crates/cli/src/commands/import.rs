@@ -1,7 +1,7 @@
 //! `enroute import`: a network that another tool wrote, as one of ours; places and obstacles as lines of a mission; a problem
 //! in PDDL as a mission; a model that is a program elsewhere as one of ours.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use super::import_models::{import_jmpl, import_pamela};
 use crate::input::read_text;
+use crate::number::whole_number;
 use crate::output::{Format, YES, document, exit, print_error, print_json, print_text, print_verbatim};
 
 /// Convert a file of another tool.
@@ -26,7 +27,7 @@ pub struct Args {
     /// Problem of the PDDL domain; more files of a JMPL model (.jmpl, .hrn, .ini), or folders of them.
     more: Vec<PathBuf>,
     /// How often each action may happen (PDDL) [default: 1].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(pddl::MAX_TIMES)))]
+    #[arg(long, value_name = "N", value_parser = whole_number(1..=pddl::MAX_TIMES))]
     times: Option<u32>,
     /// Leave out the metric: any plan counts, which is found sooner (PDDL).
     #[arg(long)]
@@ -79,6 +80,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(YES));
     }
+    if !interchange::is_network_text(&text) {
+        let is_control = rmpl::control::is_control_text(&text);
+        anyhow::ensure!(!is_control, "{name} is a control program; use `enroute run`");
+        anyhow::ensure!(
+            !is_mission(&args.file, &text),
+            "{name} is a mission; use `enroute plan` or `enroute tpn`"
+        );
+    }
     let source = Source::read(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
     let not_planned = match &source {
         Source::Enroute(_) => Vec::new(),
@@ -124,6 +133,13 @@ fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(exit(YES))
+}
+
+/// Whether a text that is not a network is a mission: by the name of its file, or because it declares what to do.
+fn is_mission(file: &Path, text: &str) -> bool {
+    let program = rmpl::parse(text).program();
+    let is_named_so = file.extension().is_some_and(|extension| extension == "rmpl");
+    is_named_so || !(program.scenarios.is_empty() && program.activities.is_empty())
 }
 
 fn is_places(name: &str, text: &str) -> bool {

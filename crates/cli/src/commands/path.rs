@@ -19,6 +19,7 @@ use terrain::{ConfigurationSpace, GridFrame, Occupancy};
 use crate::deadline::TimeLimit;
 use crate::ground::{LARGEST_MAP_BYTES, with_label};
 use crate::input::{folder_of, read_bytes};
+use crate::number::{positive_number, seed, whole_number};
 use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text, without_timings};
 
 /// Find a path on a map of obstacles.
@@ -45,18 +46,18 @@ pub struct Args {
     #[arg(long, value_parser = parse_positive)]
     step: Option<f64>,
     /// Seed for path planning.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Probability of sampling the goal.
     #[arg(long, default_value_t = 0.05, value_parser = parse_share)]
     goal_bias: f64,
     /// Maximum number of samples.
-    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = positive_number)]
     samples: u32,
     #[command(flatten)]
     time_limit: TimeLimit,
     /// Search N times, each with the next seed, and list all runs.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=1_000_000_u32))]
     repeat: u32,
     /// Don't shorten the path.
     #[arg(long)]

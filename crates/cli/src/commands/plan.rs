@@ -23,6 +23,7 @@ use crate::commands::report::read_rules;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::{path_of_file, print_problems};
 use crate::input::read_json;
+use crate::number::{positive_number, seed};
 use crate::opened::Opened;
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
@@ -42,10 +43,10 @@ pub struct Args {
     #[arg(long)]
     all: bool,
     /// List the K best plans.
-    #[arg(long, value_name = "K", conflicts_with = "all", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", conflicts_with = "all", value_parser = positive_number)]
     best: Option<u32>,
     /// Stop after N plans (with --all).
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = positive_number)]
     limit: Option<u32>,
     #[command(flatten)]
     time_limit: TimeLimit,
@@ -56,7 +57,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// Seed for path planning.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = seed)]
     seed: u64,
     /// Don't plan paths for traverses.
     #[arg(long)]

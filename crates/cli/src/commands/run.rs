@@ -17,6 +17,7 @@ use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_control;
+use crate::number::{positive_number, seed, whole_number};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// So many states before a step may be named as those that states come from.
@@ -31,7 +32,7 @@ pub struct Args {
     #[arg(long, value_name = "M.rmpl")]
     model: Option<PathBuf>,
     /// Stop after N steps (exit status 3).
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = positive_number)]
     steps: u32,
     /// Put a component into a mode at a step, as in 3:EngineA=Failed. Repeatable.
     #[arg(long, value_name = "STEP:COMPONENT=MODE")]
@@ -40,10 +41,10 @@ pub struct Args {
     #[arg(long, value_name = "STEP:VARIABLE=VALUE")]
     observe: Vec<String>,
     /// Inject random faults, using this seed.
-    #[arg(long, alias = "seed", value_name = "SEED")]
+    #[arg(long, alias = "seed", value_name = "SEED", value_parser = seed)]
     fault_seed: Option<u64>,
     /// Track only the K most likely states of each group of components.
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = positive_number)]
     k: Option<u32>,
     /// What the program knows of its plant.
     #[arg(long, value_enum, default_value_t)]
@@ -52,7 +53,7 @@ pub struct Args {
     #[arg(long)]
     trajectories: bool,
     /// Run N times with random faults and report the success rate.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = whole_number(1..=u64::MAX))]
     monte_carlo: Option<u64>,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]

@@ -14,6 +14,7 @@ use tpn::Network;
 use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
+use crate::number::seed;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
 use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
@@ -32,7 +33,7 @@ pub struct Args {
     #[arg(long)]
     adversary: bool,
     /// Seed for random durations [default: that of the script or of --seed].
-    #[arg(long, value_name = "SEED")]
+    #[arg(long, value_name = "SEED", value_parser = seed)]
     run_seed: Option<u64>,
     /// Write the values, levels and places at the end to STATE.json.
     #[arg(long, value_name = "STATE.json")]

@@ -42,6 +42,8 @@ fn a_file_of_the_other_kind_is_called_what_it_is() {
         (&["step", MISSION, "--estimates", estimates], "is a mission; use `enroute simulate`"),
         (&["run", PROGRAM, "--model", MISSION], "is a mission; --model expects a plant model"),
         (&["plan", PROGRAM], "is a control program; use `enroute run`"),
+        (&["import", MISSION], "is a mission; use `enroute plan` or `enroute tpn`"),
+        (&["import", PROGRAM], "is a control program; use `enroute run`"),
     ] {
         let output = enroute(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");

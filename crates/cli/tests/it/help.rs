@@ -8,26 +8,45 @@ fn help(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The commands with their descriptions, as the list of all of them has them.
-fn commands() -> Vec<(String, String)> {
-    let help = help(&[]);
-    let (_, listed) = help.split_once("Commands:\n").expect("a list of commands");
+/// The commands with their descriptions, as the lists of commands have them; `review verify` is one of `review`.
+fn commands() -> Vec<(Vec<String>, String)> {
+    let mut found = Vec::new();
+    collect(&[], &mut found);
+    found
+}
+
+/// The commands below `path`.
+fn collect(path: &[String], found: &mut Vec<(Vec<String>, String)>) {
+    let help = help_of(path);
+    let Some((_, listed)) = help.split_once("Commands:\n") else { return };
     let listed = listed.split("\n\n").next().expect("a list");
-    let lines = listed.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
-    let described = lines.map(|line| line.trim().split_once(' ').expect("a command and what it does"));
-    described.map(|(name, about)| (name.to_owned(), about.trim().to_owned())).collect()
+    for line in listed.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   ")) {
+        let (name, about) = line.trim().split_once(' ').expect("a command and what it does");
+        // The library words its own command, which lists the others again.
+        if name != "help" {
+            let command = [path, &[name.to_owned()]].concat();
+            found.push((command.clone(), about.trim().to_owned()));
+            collect(&command, found);
+        }
+    }
+}
+
+fn help_of(command: &[String]) -> String {
+    help(&command.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 #[test]
 fn help_fits_a_terminal_and_has_no_markup() {
     let mut all = vec![(String::new(), help(&[]))];
-    for (command, _) in commands().iter().filter(|(command, _)| command != "help") {
-        all.push((command.clone(), help(&[command])));
-        let short = enroute(&[command, "-h"]);
-        all.push((format!("{command} -h"), String::from_utf8(short.stdout).expect("UTF-8")));
+    for (command, _) in commands() {
+        let name = command.join(" ");
+        all.push((name.clone(), help_of(&command)));
+        let words: Vec<&str> = command.iter().map(String::as_str).chain(["-h"]).collect();
+        let short = enroute(&words);
+        all.push((format!("{name} -h"), String::from_utf8(short.stdout).expect("UTF-8")));
     }
-    all.push(("review verify".to_owned(), help(&["review", "verify"])));
-    assert!(all.len() > 40, "{}", all.len());
+    assert!(all.len() > 48, "{}", all.len());
+    assert!(all.iter().any(|(command, _)| command == "review verify"));
     for (command, text) in &all {
         for line in text.lines() {
             assert!(line.chars().count() <= 80, "{command}: {line}");
@@ -48,7 +67,7 @@ fn every_command_says_what_it_does_by_a_verb() {
     assert!(commands.len() > 20, "{commands:?}");
     for (command, about) in &commands {
         let verb = about.split(' ').next().expect("a word");
-        assert!(verbs.contains(&verb), "{command}: {about}");
+        assert!(verbs.contains(&verb), "{command:?}: {about}");
     }
 }
 
@@ -119,15 +138,18 @@ fn one_thing_is_told_in_the_singular() {
 
 #[test]
 fn time_limits_are_seconds_and_a_seed_is_that_of_paths() {
-    for (command, _) in commands().iter().filter(|(command, _)| command != "help") {
-        let text = help(&[command]);
+    for (command, _) in commands() {
+        let text = help_of(&command);
         let option = |name: &str| text.lines().position(|line| line.trim_start().starts_with(name));
         if let Some(at) = option("--time-limit") {
-            assert!(text.lines().nth(at).is_some_and(|line| line.contains("<SECONDS>")), "{command}: {text}");
+            assert!(
+                text.lines().nth(at).is_some_and(|line| line.contains("<SECONDS>")),
+                "{command:?}: {text}"
+            );
         }
         if let Some(at) = option("--seed") {
             let about: Vec<&str> = text.lines().skip(at).take(2).collect();
-            assert!(about.concat().contains("Seed for path planning"), "{command}: {about:?}");
+            assert!(about.concat().contains("Seed for path planning"), "{command:?}: {about:?}");
         }
     }
     // The former option has the same meaning.
@@ -138,4 +160,28 @@ fn time_limits_are_seconds_and_a_seed_is_that_of_paths() {
         output.stdout
     };
     assert_eq!(run("--seed"), run("--fault-seed"));
+}
+
+#[test]
+fn each_option_that_counts_says_which_numbers_it_accepts() {
+    let mut count = 0;
+    for (command, _) in commands() {
+        let text = help_of(&command);
+        let options = text.lines().filter_map(|line| line.trim().strip_prefix("--")?.split_once(" <"));
+        for (option, value) in options {
+            let words = command.iter().map(String::as_str);
+            let flag = format!("--{option}");
+            let output = enroute(&words.chain([flag.as_str(), "1x"]).collect::<Vec<_>>());
+            let said = String::from_utf8(output.stderr).expect("UTF-8");
+            // What the standard library says of a number says nothing of the option.
+            for vague in ["invalid digit", "invalid float", "number too", "is not in", "cannot parse"] {
+                assert!(!said.contains(vague), "{command:?} {flag} <{value}: {said}");
+            }
+            if value.starts_with("SEED>") || value.starts_with("N>") {
+                count += 1;
+                assert!(said.contains("expected a whole number from "), "{command:?} {flag}: {said}");
+            }
+        }
+    }
+    assert!(count > 20, "only {count} options that count");
 }
