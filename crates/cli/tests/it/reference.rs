@@ -123,7 +123,9 @@ fn guides_quote_what_the_program_answers() {
         &[(0, ("", ""), plan), (0, (" delay; Charge();", ""), plan), (3, ("", ""), plan)],
     );
     hold("first-control-program.md", &[(0, ("", ""), &["run", "mission.rmpl"])]);
-    hold("../README.md", &[(0, ("", ""), plan)]);
+    let (fails, edit) = ("`[0,50]` to `[0,20]`", ("[0,50]", "[0,20]"));
+    assert!(fs::read_to_string(docs().join("../README.md")).expect("the README").contains(fails));
+    hold("../README.md", &[(0, ("", ""), plan), (0, edit, plan)]);
 }
 
 /// What the first tutorial lets its reader do, and what it says that follows.
