@@ -12,6 +12,8 @@ use super::seat::Seat;
 use super::tests::{LASTING, SCENARIO, reviewed};
 use super::{FlightRules, Review, Section, Status, WaiverState};
 
+mod assumptions_tests;
+
 const PEOPLE: [&str; 3] = ["Chair", "Ada", "Grace"];
 
 /// A board of two people in one role, before a mission of which nothing needs attention.
@@ -469,7 +471,7 @@ fn an_acknowledgment_is_of_a_place_and_not_only_of_words() {
         line.clone()
     };
     let line = assumed(&board.review);
-    assert_eq!(line.place, "in scenario#1, after the start, before Tell(GO=OK)#1");
+    assert_eq!(line.place, "[5,20] in scenario#1, after the start, before Tell(GO=OK)#1");
     let lines: Vec<LineKey> = standing(&board.record, &Present::of_review(&board.review))
         .unacknowledged
         .iter()

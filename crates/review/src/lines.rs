@@ -154,6 +154,9 @@ pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
 /// How the line of a strongly controllable plan begins.
 pub(crate) const STRONG: &str = "strongly controllable: ";
 
+/// How the lines begin of what the world would have to do as it suits the plan.
+pub(super) const ASSUMES: &str = "assumes favorable ";
+
 /// What keeps a plan from being executed as it says.
 #[derive(Clone, Copy)]
 struct Unsure<'a> {
@@ -306,9 +309,9 @@ fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let line = |problem: &snapshot::Problem| {
         let message = problem.message.as_str();
         let text = match (message.strip_prefix(exogenous::WHEN), message.strip_prefix(exogenous::WHAT)) {
-            (Some(when), _) => format!("assumes favorable timing of external events: {when}"),
-            (None, Some(what)) => format!("assumes favorable external events: {what}"),
-            (None, None) => format!("assumes favorable external events: {message}"),
+            (Some(when), _) => format!("{ASSUMES}timing of external events: {when}"),
+            (None, Some(what)) => format!("{ASSUMES}external events: {what}"),
+            (None, None) => format!("{ASSUMES}external events: {message}"),
         };
         places.line(Status::Attention, text, Some(problem.span), Vec::new(), Vec::new())
     };

@@ -1,7 +1,8 @@
 //! Where in the network a line of the checklist is: what comes before and after what it is about.
 //!
 //! The names of a line say what it is about, and a `delay` has none that lasts: moved to another place, it is written with
-//! the same words. So its place counts, with what it precedes.
+//! the same words. So its place counts, with what it precedes. A line about what the world does is about all delays and choices of
+//! its branch, whether it lists them or not: each one's place counts, with its bounds and the alternatives that it is in.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,6 +11,7 @@ use snapshot::Snapshot;
 use tpn::{ArcKind, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 use super::hash::sha256;
+use super::lines::ASSUMES;
 use super::{Line, Review};
 
 /// Longer places are known by their digest.
@@ -19,9 +21,22 @@ const MAX_PLACE_BYTES: usize = 400;
 pub(super) fn find_places(review: &mut Review, snapshot: &Snapshot) {
     let Some(network) = snapshot.network.as_deref() else { return };
     let mut surroundings = Surroundings::new(network);
+    let is_assumption = |line: &Line| line.text.starts_with(ASSUMES);
+    let has_assumptions = review.plan.iter().any(is_assumption);
+    let assumptions = if has_assumptions { tpn::assumptions(&snapshot.program) } else { Vec::new() };
     let events = std::mem::take(&mut review.events);
     for line in review.every_line() {
         line.place = surroundings.place(line);
+    }
+    for line in review.plan.iter_mut().filter(|line| is_assumption(line)) {
+        let about = assumptions.iter().filter(|it| line.span == Some(it.warning));
+        let about: BTreeSet<OccurrenceId> = about
+            .flat_map(|assumption| &assumption.statements)
+            .flat_map(|statement| surroundings.written_within(*statement))
+            .collect();
+        if !about.is_empty() {
+            line.place = surroundings.place_with_bounds(&about);
+        }
     }
     review.events = events;
 }
@@ -30,38 +45,68 @@ pub(super) fn find_places(review: &mut Review, snapshot: &Snapshot) {
 struct Surroundings<'n> {
     network: &'n Network,
     occurrences: BTreeMap<&'n str, OccurrenceId>,
+    /// What is written where, in textual order.
+    written: Vec<(Span, OccurrenceId)>,
+    alternatives: Alternatives,
     /// What was found of an event, backwards or forwards.
     known: BTreeMap<(NodeId, bool), String>,
 }
 
 impl<'n> Surroundings<'n> {
     fn new(network: &'n Network) -> Self {
-        let named = network.occurrences.iter().enumerate();
-        let occurrences =
-            named.map(|(index, it)| (it.name.as_str(), OccurrenceId::from_index(index))).collect();
-        Self { network, occurrences, known: BTreeMap::new() }
+        let ids =
+            || (network.occurrences.iter().enumerate()).map(|(at, it)| (OccurrenceId::from_index(at), it));
+        let occurrences = ids().map(|(id, it)| (it.name.as_str(), id)).collect();
+        let mut written: Vec<(Span, OccurrenceId)> =
+            ids().filter_map(|(id, it)| Some((it.span?, id))).collect();
+        written.sort_by_key(|(span, id)| (span.start, span.end, *id));
+        let alternatives = Alternatives::new(network);
+        Self { network, occurrences, written, alternatives, known: BTreeMap::new() }
     }
 
     fn place(&mut self, line: &Line) -> String {
         let found = self.about(line);
-        let ends: Vec<(Option<OccurrenceId>, NodeId, NodeId)> = if found.is_empty() {
-            line.nodes.iter().map(|&node| (None, node, node)).collect()
-        } else {
-            let ends = |id: &OccurrenceId| {
-                let occurrence = &self.network.occurrences[id.index()];
-                (Some(*id), occurrence.start, occurrence.end)
-            };
-            found.iter().map(ends).collect()
-        };
-        let mut parts = Vec::new();
-        for (id, start, end) in ends {
-            let parent = id.and_then(|id| self.network.occurrences[id.index()].parent);
-            let parent = parent.map_or("", |parent| self.network.occurrences[parent.index()].name.as_str());
-            let (before, after) = (self.next_to(start, false), self.next_to(end, true));
-            parts.push(format!("in {parent}, after {before}, before {after}"));
+        if found.is_empty() {
+            let parts = line.nodes.iter().map(|&node| self.between("", node, node));
+            return bounded(&parts.collect::<Vec<_>>());
         }
-        let place = parts.join("; ");
-        if place.len() > MAX_PLACE_BYTES { sha256(place.as_bytes()) } else { place }
+        let parts = found.iter().map(|&id| self.place_of(id));
+        bounded(&parts.collect::<Vec<_>>())
+    }
+
+    /// The places of occurrences, with how long each may take and in which alternatives it is.
+    fn place_with_bounds(&mut self, about: &BTreeSet<OccurrenceId>) -> String {
+        let part = |&id: &OccurrenceId| {
+            let arc = self.network.occurrences[id.index()].arc;
+            let bounds = arc.map_or_else(String::new, |arc| {
+                let arc = &self.network.arcs[arc.index()];
+                format!("[{},{}] ", arc.lower, arc.upper)
+            });
+            let alternatives = self.alternatives_of(id);
+            let numbers = alternatives.iter().map(|number| format!("in alternative {number}, "));
+            format!("{bounds}{}{}", numbers.collect::<String>(), self.place_of(id))
+        };
+        bounded(&about.iter().map(part).collect::<Vec<_>>())
+    }
+
+    fn place_of(&mut self, id: OccurrenceId) -> String {
+        let occurrence = &self.network.occurrences[id.index()];
+        let parent = occurrence.parent;
+        let parent = parent.map_or("", |parent| self.network.occurrences[parent.index()].name.as_str());
+        self.between(parent, occurrence.start, occurrence.end)
+    }
+
+    fn between(&mut self, parent: &str, start: NodeId, end: NodeId) -> String {
+        let (before, after) = (self.next_to(start, false), self.next_to(end, true));
+        format!("in {parent}, after {before}, before {after}")
+    }
+
+    /// Which alternatives an occurrence is in, from the inside out, by their numbers from 1.
+    fn alternatives_of(&self, id: OccurrenceId) -> Vec<usize> {
+        let parent = |id: &OccurrenceId| self.network.occurrences[id.index()].parent;
+        let callers = std::iter::successors(Some(id), parent);
+        let spans = callers.filter_map(|id| self.network.occurrences[id.index()].span);
+        spans.flat_map(|span| self.alternatives.around(span)).collect()
     }
 
     /// What a line is about: the occurrences that it names, otherwise those that are written where it leads.
@@ -78,34 +123,40 @@ impl<'n> Surroundings<'n> {
         }
     }
 
+    /// The occurrences that are written within `span`.
+    fn written_within(&self, span: Span) -> Vec<OccurrenceId> {
+        let first = self.written.partition_point(|(at, _)| at.start < span.start);
+        let within = self.written[first..].iter().take_while(|(at, _)| at.start <= span.end);
+        within.filter(|(at, _)| at.end <= span.end).map(|(_, id)| *id).collect()
+    }
+
     /// The occurrences that are written within `span`, otherwise the closest ones around it.
     fn written_at(&self, span: Span) -> BTreeSet<OccurrenceId> {
-        let is_within = |inner: Span, outer: Span| outer.start <= inner.start && inner.end <= outer.end;
-        let written = || {
-            let all = self.network.occurrences.iter().enumerate();
-            all.filter_map(|(index, it)| Some((OccurrenceId::from_index(index), it.span?)))
-        };
-        let within: BTreeSet<OccurrenceId> =
-            written().filter(|(_, at)| is_within(*at, span)).map(|(id, _)| id).collect();
+        let within = self.written_within(span);
         if !within.is_empty() {
-            return within;
+            return within.into_iter().collect();
         }
-        let around: Vec<(OccurrenceId, u32)> = written()
-            .filter(|(_, at)| is_within(span, *at))
-            .map(|(id, at)| (id, at.end - at.start))
-            .collect();
-        let closest = around.iter().map(|(_, length)| *length).min();
-        around.iter().filter(|(_, length)| Some(*length) == closest).map(|(id, _)| *id).collect()
+        let is_around = |at: &Span| at.start <= span.start && span.end <= at.end;
+        let around = || self.written.iter().filter(|(at, _)| is_around(at));
+        let closest = around().map(|(at, _)| at.end - at.start).min();
+        around().filter(|(at, _)| Some(at.end - at.start) == closest).map(|(_, id)| *id).collect()
     }
 
     /// The activities and assertions that come next to an event.
     fn next_to(&mut self, node: NodeId, is_forward: bool) -> String {
-        if let Some(known) = self.known.get(&(node, is_forward)) {
-            return known.clone();
-        }
         let mut names = BTreeSet::new();
         let (mut seen, mut open) = (BTreeSet::from([node]), vec![node]);
+        // The events from here on without a branch: what is next to one of them is next to all before it.
+        let mut chain = Vec::new();
+        let mut is_chain = true;
         while let Some(node) = open.pop() {
+            if is_chain {
+                if let Some(known) = self.known.get(&(node, is_forward)).cloned() {
+                    self.remember(chain, is_forward, &known);
+                    return known;
+                }
+                chain.push(node);
+            }
             let here = self.names_at(node, is_forward);
             if !here.is_empty() {
                 names.extend(here);
@@ -123,10 +174,15 @@ impl<'n> Surroundings<'n> {
                     open.push(next);
                 }
             }
+            is_chain &= open.len() == 1;
         }
         let found = names.into_iter().collect::<Vec<_>>().join(" and ");
-        self.known.insert((node, is_forward), found.clone());
+        self.remember(chain, is_forward, &found);
         found
+    }
+
+    fn remember(&mut self, chain: Vec<NodeId>, is_forward: bool, found: &str) {
+        self.known.extend(chain.into_iter().map(|node| ((node, is_forward), found.to_owned())));
     }
 
     /// The activities and assertions that start at an event, or end there.
@@ -142,5 +198,47 @@ impl<'n> Surroundings<'n> {
             is_named.then_some(occurrence.name.as_str())
         });
         found.collect()
+    }
+}
+
+/// A place, by its digest if it is long.
+fn bounded(parts: &[String]) -> String {
+    let place = parts.join("; ");
+    if place.len() > MAX_PLACE_BYTES { sha256(place.as_bytes()) } else { place }
+}
+
+/// The alternatives of all choices, where they are written, in textual order. One is within another, or apart from it.
+struct Alternatives(Vec<Written>);
+
+struct Written {
+    span: Span,
+    /// The number of the alternative, from 1.
+    number: usize,
+    /// The closest alternative around it.
+    around: Option<usize>,
+}
+
+impl Alternatives {
+    fn new(network: &Network) -> Self {
+        let spans = network.decisions.iter().flat_map(|decision| decision.alternative_spans.iter().zip(1..));
+        let mut all: Vec<(Span, usize)> = spans.map(|(span, number)| (*span, number)).collect();
+        all.sort_by_key(|(span, number)| (span.start, std::cmp::Reverse(span.end), *number));
+        all.dedup_by_key(|(span, _)| *span);
+        let mut found: Vec<Written> = Vec::new();
+        let mut open: Vec<usize> = Vec::new();
+        for (span, number) in all {
+            while open.pop_if(|last| found[*last].span.end < span.end).is_some() {}
+            let around = open.last().copied();
+            open.push(found.len());
+            found.push(Written { span, number, around });
+        }
+        Self(found)
+    }
+
+    /// The numbers of the alternatives around `span`, from the inside out.
+    fn around(&self, span: Span) -> impl Iterator<Item = usize> {
+        let before = self.0.partition_point(|it| it.span.start <= span.start);
+        let outward = std::iter::successors(before.checked_sub(1), |&at| self.0[at].around);
+        outward.map(|at| &self.0[at]).filter(move |it| span.end <= it.span.end).map(|it| it.number)
     }
 }

@@ -21,7 +21,9 @@ pub mod text;
 pub mod vocabulary;
 pub mod worth;
 
-pub use compile::{Ground, Level, Top, assumed, compile, compile_on, compile_scenarios, merge_diagnostics};
+pub use compile::{
+    Assumption, Ground, Level, Top, assumed, assumptions, compile, compile_on, compile_scenarios, merge_diagnostics,
+};
 pub use network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
     EventRef, Extent, Goal, Label, LabelId, LevelCondition, Literal, Network, Node, NodeId, Occurrence,

@@ -42,6 +42,13 @@ pub struct Choice {
     pub needs_blank: bool,
 }
 
+impl Choice {
+    /// Where it is told: at its bounds, if they are written.
+    pub fn place(&self) -> Span {
+        self.bounds.1.unwrap_or(self.statement)
+    }
+}
+
 /// How the messages begin whose branch leaves times to the plan; the statements and their bounds follow.
 pub const WHEN: &str = "the planner chooses when this external event happens: ";
 
@@ -59,38 +66,46 @@ pub enum Alternatives {
     Unordered,
 }
 
-/// A branch of the world's that leaves alternatives to the plan: those of the first such statement and where its word stands,
-/// and how many more such statements there are.
-pub fn alternatives(of: &Alternatives, word: Span, more: usize) -> Diagnostic {
-    let what = match of {
+/// So many of the statements of a branch are listed.
+const MAX_LISTED: usize = 4;
+
+/// What the statements of a branch leave to the plan, one after the other.
+fn list(parts: &[String]) -> String {
+    match parts {
+        [shown @ .., last] if !shown.is_empty() && parts.len() <= MAX_LISTED => {
+            format!("{}, and {last}", shown.join(", "))
+        }
+        all if all.len() > MAX_LISTED => {
+            format!("{}, and {} more", all[..MAX_LISTED].join(", "), all.len() - MAX_LISTED)
+        }
+        all => all.concat(),
+    }
+}
+
+/// A branch of the world's that leaves alternatives to the plan, by each such statement and where its word is; none if it leaves
+/// none.
+pub fn alternatives(found: &[(Alternatives, Span)]) -> Option<Diagnostic> {
+    let (first, word) = found.first()?;
+    let what = |(of, _): &(Alternatives, Span)| match of {
         Alternatives::Choose(count) => format!("one of the {count} alternatives of `choose`"),
         Alternatives::Any(group) => format!("one for a member of `{group}`"),
         Alternatives::Unordered => "the first one of `unordered`".to_owned(),
     };
-    let more = match more {
-        0 => String::new(),
-        1 => ", and 1 more choice".to_owned(),
-        more => format!(", and {more} more choices"),
-    };
-    let hint = match of {
+    let hint = match first {
         Alternatives::Unordered => "write the events in the order in which they happen",
         Alternatives::Choose(_) | Alternatives::Any(_) => {
             "keep one alternative, and plan for each of the others in a separate scenario"
         }
     };
-    Diagnostic::warning(CODE, word, format!("{WHAT}{what}{more}")).with_hint(hint)
+    let what = list(&found.iter().map(what).collect::<Vec<_>>());
+    Some(Diagnostic::warning(CODE, *word, format!("{WHAT}{what}")).with_hint(hint))
 }
 
 /// A branch of the world's that leaves `choices` to the plan; none if it leaves none.
 pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
-    let first = choices.first()?;
-    let span = first.bounds.1.unwrap_or(first.statement);
-    let more = match choices.len() - 1 {
-        0 => String::new(),
-        1 => ", and 1 more".to_owned(),
-        more => format!(", and {more} more"),
-    };
-    let message = format!("{WHEN}`{}` leaves it {}{more}", first.name, first.bounds.0);
+    let span = choices.first()?.place();
+    let left = choices.iter().map(|it| format!("`{}` leaves it {}", it.name, it.bounds.0));
+    let message = format!("{WHEN}{}", list(&left.collect::<Vec<_>>()));
     let hint = match choices.iter().find(|choice| !choice.is_finite) {
         Some(endless) => format!(
             "give it a finite maximum, as in `{} contingent [0,30]`, so that the plan must work for every time in the range",

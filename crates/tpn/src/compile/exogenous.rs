@@ -19,7 +19,11 @@ pub(super) fn check(
 ) -> Vec<Diagnostic> {
     let warnings = |of| {
         let statements = of_the_world(program, of)?;
-        Some(branch(&choices(&statements, constants)).into_iter().chain(decisions(program, &statements)))
+        let times = branch(&choices(&statements, constants));
+        let decisions =
+            decisions(program, &statements).into_iter().map(|decision| (decision.of, decision.word));
+        let alternatives = alternatives(&decisions.collect::<Vec<_>>());
+        Some(times.into_iter().chain(alternatives))
     };
     branches(scenario).iter().filter_map(warnings).flatten().collect()
 }
@@ -30,6 +34,36 @@ pub fn assumed(program: &Program) -> Vec<Span> {
     let branches = program.scenarios.iter().flat_map(branches);
     let statements = branches.filter_map(|of| of_the_world(program, of));
     statements.flat_map(|of| choices(&of, &constants)).map(|choice| choice.statement).collect()
+}
+
+/// What one warning of a branch of the world's is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assumption {
+    /// Where the warning is.
+    pub warning: Span,
+    /// Each statement that leaves something to the plan.
+    pub statements: Vec<Span>,
+}
+
+/// The warnings about the world's branches of all scenarios, with every statement that they are about. The text of a warning
+/// lists only some.
+pub fn assumptions(program: &Program) -> Vec<Assumption> {
+    let (constants, _) = Constants::new(program);
+    let branches = program.scenarios.iter().flat_map(branches);
+    let of_branch = |statements: Vec<&Statement>| {
+        let times = choices(&statements, &constants);
+        let decisions = decisions(program, &statements);
+        let times = times.first().map(|first| Assumption {
+            warning: first.place(),
+            statements: times.iter().map(|choice| choice.statement).collect(),
+        });
+        let alternatives = decisions.first().map(|first| Assumption {
+            warning: first.word,
+            statements: decisions.iter().map(|decision| decision.statement).collect(),
+        });
+        [times, alternatives]
+    };
+    branches.filter_map(|of| of_the_world(program, of)).flat_map(of_branch).flatten().collect()
 }
 
 /// The branches of a scenario, one of which may be the world's.
@@ -70,35 +104,42 @@ fn of_the_world<'program>(
     Some(statements)
 }
 
-/// A warning if statements of the world's leave to the plan what happens, or in which order. An `if` is decided by its
-/// condition, and what is optional is never the world's (SPEC 13.3).
-fn decisions(program: &Program, statements: &[&Statement]) -> Option<Diagnostic> {
+/// A statement of the world's that leaves to the plan what happens, or in which order.
+struct Decision {
+    of: Alternatives,
+    /// Where its word is.
+    word: Span,
+    statement: Span,
+}
+
+/// The statements of the world's that leave to the plan what happens, or in which order. An `if` is decided by its condition,
+/// and what is optional is never the world's (SPEC 13.3).
+fn decisions(program: &Program, statements: &[&Statement]) -> Vec<Decision> {
     let found = statements.iter().filter_map(|statement| {
         let start = statement.span.start;
-        let at = |word: &str| Span::new(start, start + word.len() as u32);
+        let of = |of: Alternatives, word: &str| {
+            let word = Span::new(start, start + word.len() as u32);
+            Some(Decision { of, word, statement: statement.span })
+        };
         match &statement.kind {
             // What represents a choice has alternatives that begin with the whole statement.
             StatementKind::Choose(parts)
                 if parts.len() > 1 && parts.iter().all(|it| it.span.start > start) =>
             {
-                Some((Alternatives::Choose(parts.len()), at("choose")))
+                of(Alternatives::Choose(parts.len()), "choose")
             }
-            StatementKind::Unordered(parts) if parts.len() > 1 => {
-                Some((Alternatives::Unordered, at("unordered")))
-            }
+            StatementKind::Unordered(parts) if parts.len() > 1 => of(Alternatives::Unordered, "unordered"),
             StatementKind::Members(members) if has_several(program, &members.group.text) => {
                 match members.form {
-                    MembersForm::Any => Some((Alternatives::Any(members.group.text.to_string()), at("any"))),
-                    MembersForm::Unordered => Some((Alternatives::Unordered, at("each"))),
+                    MembersForm::Any => of(Alternatives::Any(members.group.text.to_string()), "any"),
+                    MembersForm::Unordered => of(Alternatives::Unordered, "each"),
                     MembersForm::Parallel | MembersForm::Sequence => None,
                 }
             }
             _ => None,
         }
     });
-    let found: Vec<(Alternatives, Span)> = found.collect();
-    let (first, word) = found.first()?;
-    Some(alternatives(first, *word, found.len() - 1))
+    found.collect()
 }
 
 /// Whether a group or a fleet has more than one member.

@@ -29,7 +29,7 @@ use rmpl::{Code, Diagnostic, Severity, Span, listed};
 use smol_str::SmolStr;
 
 use crate::network::Network;
-pub use exogenous::assumed;
+pub use exogenous::{Assumption, assumed, assumptions};
 pub use ground::{Ground, Level};
 
 use constants::Constants;
