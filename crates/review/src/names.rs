@@ -40,6 +40,7 @@ fn is_hidden(letter: char) -> bool {
 /// What is wrong with a name, no matter who has it.
 pub fn problem(name: &str) -> Option<String> {
     let is_word_mixed = |word: &str| !word.is_single_script();
+    let composed: String = name.nfc().collect();
     if !is_visible(name) {
         return Some("a name must not contain line breaks or invisible characters".to_owned());
     }
@@ -49,27 +50,70 @@ pub fn problem(name: &str) -> Option<String> {
     if name.chars().count() > MAX_NAME_LENGTH {
         return Some(format!("a name must have at most {MAX_NAME_LENGTH} characters"));
     }
+    if let Some(sign) = composed.chars().find(|&letter| !is_of_words(letter) && !is_sign(letter)) {
+        return Some(format!(
+            "“{sign}” is not allowed in a name: use letters, digits, spaces, and signs such as ' - . ·"
+        ));
+    }
+    if let Some(letter) = composed.chars().find(|&letter| is_of_words(letter) && !is_usual(letter)) {
+        return Some(format!(
+            "“{letter}” is not a usual letter of names, so the name can look like another name"
+        ));
+    }
     let mixed = name.split_whitespace().find(|word| is_word_mixed(word))?;
     Some(format!("“{mixed}” mixes letters of several scripts, so it can look like another name"))
 }
 
+/// Whether a character is a letter, a mark on one, or a digit.
+fn is_of_words(letter: char) -> bool {
+    letter.is_alphanumeric() || is_combining_mark(letter)
+}
+
+/// Whether a letter is in use today (Unicode Technical Standard 39), and no variant of another one: not a small capital, not
+/// a letter of phonetics. Scripts of few people are in use.
+fn is_usual(letter: char) -> bool {
+    letter.identifier_allowed() || letter.identifier_type() == Some(IdentifierType::Limited_Use)
+}
+
+/// Whether a character is between the words and letters of names and roles. Comparisons leave it out.
+fn is_sign(letter: char) -> bool {
+    let joins = || letter.identifier_type() == Some(IdentifierType::Inclusion) && letter != ':';
+    letter.is_whitespace() || "'’-‐.·,&/()".contains(letter) || joins()
+}
+
 /// Whether people could take one name for the other: they are the same without case, accents, spaces and signs, or by
-/// the letters that they look like (the skeletons of Unicode Technical Standard 39).
+/// the letters that they look like (the skeletons of Unicode Technical Standard 39, and a few pairs more).
 pub fn are_alike(one: &str, other: &str) -> bool {
     !forms(one).is_disjoint(&forms(other))
 }
 
 /// What a name looks like: as it is written, and in small letters, for `I` looks like `l` and `i` does not.
 fn forms(name: &str) -> BTreeSet<String> {
-    let written: String = name.nfkc().collect();
+    // Small letters of Cherokee look like small capitals of Latin.
+    let capital = |letter: char| match letter {
+        '\u{ab70}'..='\u{abbf}' => letter.to_uppercase().next().unwrap_or(letter),
+        other => other,
+    };
+    let written: String = name.nfkc().map(capital).collect();
     let small = written.to_lowercase();
     [written, small].iter().map(|form| letters(skeleton(form))).collect()
 }
 
 fn letters(form: impl Iterator<Item = char>) -> String {
     let bare = form.nfd().filter(|&letter| !is_combining_mark(letter) && letter.is_alphanumeric());
-    bare.flat_map(char::to_lowercase).collect()
+    let mut found = String::new();
+    for letter in bare.flat_map(char::to_lowercase) {
+        match PAIRS.iter().find(|(one, _)| *one == letter) {
+            Some((_, looks_like)) => found.push_str(looks_like),
+            None => found.push(letter),
+        }
+    }
+    found
 }
+
+/// Letters and digits that look like others, in small letters, where the standard tells them apart.
+const PAIRS: [(char, &str); 8] =
+    [('w', "vv"), ('d', "cl"), ('m', "rn"), ('5', "s"), ('8', "b"), ('0', "o"), ('1', "l"), ('4', "a")];
 
 #[cfg(test)]
 mod tests {
@@ -89,11 +133,27 @@ mod tests {
             ["Ida", "ida"],
             ["Otto", "0tto"],
             ["Maria-Luise", "Maria Luise"],
+            ["VVilliam", "William"],
+            ["5am", "Sam"],
+            ["4da", "Ada"],
+            ["8ob", "Bob"],
+            ["Rnaria", "Maria"],
+            ["dara", "Clara"],
+            ["Daude", "Claude"],
+            ["Grace₂", "Grace2"],
+            ["ꭺ", "A"],
         ] {
             assert!(are_alike(one, other), "{one} {other}");
             assert!(are_alike(other, one), "{other} {one}");
         }
-        for [one, other] in [["Ada", "Ida"], ["Ada", "Adam"], ["Grace", "Ada"], ["Ян", "Ян Ли"]] {
+        for [one, other] in [
+            ["Ada", "Ida"],
+            ["Ada", "Adam"],
+            ["Grace", "Ada"],
+            ["Ян", "Ян Ли"],
+            ["Adam", "Adan"],
+            ["Grace 2", "Grace 3"],
+        ] {
             assert!(!are_alike(one, other), "{one} {other}");
         }
     }
@@ -102,6 +162,27 @@ mod tests {
     fn names_that_only_deceive_are_refused() {
         for name in ["Ada", "Àda", "Ян", "田中 Ada", "O'Neil", "Maria-Luise 2"] {
             assert_eq!(problem(name), None, "{name}");
+        }
+        let real =
+            "José Nguyễn O'Brien O’Brien 王芳 Иван محمد Zoë Đặng Łukasz Þór Əli Sałata Núria·Gal·la D. יעל
+            Ηλέκτρα दीपक สมชาย 김민준 さくら ნინო Արամ ᏣᎳᎩ ⵉⴷⵉⵔ Kaʻiulani J.-P. Strauß Ångström";
+        for name in real.split_whitespace().chain(["Lee, Ann (JPL)", "R&D / GNC"]) {
+            assert_eq!(problem(name), None, "{name}");
+        }
+        // Letters that are variants of others, and signs that look like letters.
+        for (name, reason) in [
+            ("ᴀda", "“ᴀ” is not a usual letter"),
+            ("Adⱥ", "“ⱥ” is not a usual letter"),
+            ("Adꬰ", "“ꬰ” is not a usual letter"),
+            ("Ａda", "“Ａ” is not a usual letter"),
+            ("Grace₂", "“₂” is not a usual letter"),
+            ("∆da", "“∆” is not allowed"),
+            ("🅰da", "“🅰” is not a usual letter"),
+            ("Ada$", "“$” is not allowed"),
+            ("Ad@", "“@” is not allowed"),
+        ] {
+            let refused = problem(name).unwrap_or_default();
+            assert!(refused.starts_with(reason), "{name}: {refused}");
         }
         for name in ["", " \u{200b}", "...", "\u{2800}", "А\u{64}а", "Ada\nGrace"] {
             assert!(problem(name).is_some(), "{name:?}");
