@@ -20,7 +20,7 @@ const MISSIONS: u64 = 150;
 
 /// Words that say nothing of what a mission has.
 const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learned Look No Nothing Of Propagate Search The \
-    This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
+    This Together Try Whatever a after again all allow allows alone and another any arcs around as at back be before besides \
     block blocks both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction delays do \
     duration durations each end ends event events failed failure first fit follows for found from go gaps greatest happens has have \
     here if impossible in inf instead is it its keeping keeps kept last lasts learned least leave leaves left let long lower maximum minimum mission more most \

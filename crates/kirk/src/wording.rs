@@ -3,7 +3,10 @@
 use controllability::{Broken, FailingRun, RunEvent};
 use exact::{Rational, Time};
 use rmpl::program::{Change, LabelMode};
-use tpn::{Arc, ArcId, ArcKind, Choice, EventRef, LabelId, Network, OccurrenceKind, Supply, Use};
+use tpn::{
+    Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Choice, EventRef, LabelId, Network, OccurrenceKind,
+    Supply, Use,
+};
 
 use crate::failure::{FailureKind, Member, NATURE_ENDS};
 use crate::trace::{Constraint, CycleMember};
@@ -59,7 +62,7 @@ impl<K> Counted<K> {
         }
         match name.as_str() {
             "the delay" => format!("{count} delays"),
-            "the bounded block" => format!("{count} bounded blocks"),
+            UNNAMED_BLOCK => format!("{count} bounded blocks"),
             name => match name.strip_prefix("a gap of ") {
                 Some(length) => format!("{count} gaps of {length}"),
                 None => format!("{name} ({count} times)"),
@@ -548,7 +551,7 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
             }
             OccurrenceKind::Delay => return "the delay".to_owned(),
             OccurrenceKind::Scenario => return "the scenario".to_owned(),
-            OccurrenceKind::Scope => return "the bounded block".to_owned(),
+            OccurrenceKind::Scope => return block_name(network, arc),
             OccurrenceKind::Primitive | OccurrenceKind::Activity => {}
         }
         let same = network.occurrences.iter().filter(|other| other.activity == occurrence.activity).count();
@@ -567,7 +570,57 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
     }
     match arc.labels.first() {
         Some(label) => network.labels[label.index()].text.to_string(),
-        None => "the bounded block".to_owned(),
+        None => block_name(network, arc),
+    }
+}
+
+/// What a block is called that says nothing by which to tell it from others.
+const UNNAMED_BLOCK: &str = "the bounded block";
+
+/// What tells a block with bounds from others: its first and its last activity in the text, `the block from Drive to Photo`.
+/// Its line would not do: a text that means the same in other places keeps its plan, and so the sentences about it.
+fn block_name(network: &Network, arc: &Arc) -> String {
+    let is_own = |block: &&Block| match &block.kind {
+        BlockKind::Scope { arcs, .. } => {
+            arcs.iter().any(|&id| std::ptr::eq(&raw const network.arcs[id.index()], arc))
+        }
+        _ => false,
+    };
+    let mut parts = Vec::new();
+    if let Some(Block { kind: BlockKind::Scope { child, .. }, .. }) = network.blocks.iter().find(is_own) {
+        collect_activities(network, *child, &mut parts);
+    }
+    match parts.as_slice() {
+        [] => UNNAMED_BLOCK.to_owned(),
+        [only] => format!("the block around {only}"),
+        [first, .., last] => format!("the block from {first} to {last}"),
+    }
+}
+
+/// The names of the activities and assertions in a block, in textual order, without those inside of activities.
+fn collect_activities(network: &Network, block: BlockId, names: &mut Vec<String>) {
+    let mut waiting = vec![block];
+    while let Some(block) = waiting.pop() {
+        let of_arc = |arc: ArcId| {
+            let arc = &network.arcs[arc.index()];
+            let kind = arc.occurrence.map(|it| network.occurrences[it.index()].kind);
+            let is_named = matches!(
+                kind,
+                Some(OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Assertion)
+            );
+            is_named.then(|| arc_name(network, arc))
+        };
+        match &network.blocks[block.index()].kind {
+            BlockKind::Leaf { arc } => names.extend(of_arc(*arc)),
+            BlockKind::Scope { child, arcs, .. } => match arcs.iter().find_map(|&arc| of_arc(arc)) {
+                Some(name) => names.push(name),
+                None => waiting.push(*child),
+            },
+            BlockKind::Guard { child, .. } => waiting.push(*child),
+            BlockKind::Sequence { children: parts }
+            | BlockKind::Parallel { branches: parts }
+            | BlockKind::Choose { alternatives: parts, .. } => waiting.extend(parts.iter().rev()),
+        }
     }
 }
 

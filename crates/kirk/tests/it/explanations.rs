@@ -60,6 +60,20 @@ fn a_deadline_that_is_too_tight_names_what_takes_too_long() {
 }
 
 #[test]
+fn blocks_are_told_apart_by_their_activities() {
+    let failure = check(
+        "primitive Drive()[1,9]; primitive Photo()[1,2]; var L : {ON};\n\
+         scenario S[0,40] = { { delay; Drive() }[30,35]; { Photo(); delay; { L=ON [1,2], Drive() } }[12,15] }",
+    );
+    assert_eq!(
+        failure.reasons[0].message,
+        "the block around Drive#1 and the block from Photo to Drive#2 need at least 42, but the scenario allows only 40"
+    );
+    let fixes: Vec<&str> = failure.relaxations.iter().map(|relaxation| relaxation.label.as_str()).collect();
+    assert!(fixes.contains(&"lower the minimum of the block around Drive#1 from 30 to 28"), "{fixes:?}");
+}
+
+#[test]
 fn a_requirement_longer_than_its_assertion_names_both() {
     let text = "primitive Drive()[405,486];\n\
         scenario S[0,800] = { { delay[0,inf]; do { Drive() } maintaining PATH1=OK }, { delay[10,10]; PATH1=OK[404,404] } }";
