@@ -20,7 +20,7 @@ export function ensureClipboard() {
       const isCopied = document.execCommand("copy");
       field.remove();
       holder?.focus({ preventScroll: true });
-      if (!isCopied) throw new Error("the browser lets this page copy nothing");
+      if (!isCopied) throw new Error("the browser does not allow this page to copy");
     };
     Object.defineProperty(navigator, "clipboard", { value: { writeText }, configurable: true });
   } catch {
@@ -33,6 +33,6 @@ export async function readClipboard() {
   try {
     return await navigator.clipboard.readText();
   } catch {
-    throw new Error("the browser lets this page read the clipboard only by its keys. Press Ctrl+V to paste");
+    throw new Error("the browser allows pasting only with the keyboard. Press Ctrl+V");
   }
 }

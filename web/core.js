@@ -71,6 +71,6 @@ function sharedFlag() {
 
 /** A core in a browser that starts no worker: it fails at once, and the text can be edited. */
 function coreWithout(error, tell) {
-  const failing = setTimeout(() => tell("failed", `the browser starts no worker: ${error.message}`));
+  const failing = setTimeout(() => tell("failed", `the browser could not start a worker: ${error.message}`));
   return { patienceMillis: 0, send() {}, supersede() {}, stop: () => clearTimeout(failing) };
 }

@@ -52,7 +52,7 @@ export function keepGraphics({ drawOn, pause, isWebGpu, giveUp }) {
 
   async function recover() {
     isRecovering = true;
-    let reason = new Error("they were lost again and again");
+    let reason = new Error("access was lost several times");
     for (const wait of WAITS_MILLIS) {
       await new Promise((resolve) => setTimeout(resolve, wait));
       try {
@@ -90,7 +90,7 @@ export function keepGraphics({ drawOn, pause, isWebGpu, giveUp }) {
       await draw(canvas());
     } catch (error) {
       if (error?.code !== "no-graphics" || !("gpu" in navigator)) throw error;
-      console.warn(`Nothing can be drawn with WebGPU: ${error.message}`);
+      console.warn(`Enroute could not draw with WebGPU: ${error.message}`);
       avoidsWebGpu = true;
       await draw(freshCanvas());
     }
@@ -133,14 +133,14 @@ export function whyNothingIsDrawn(error) {
   }
   if (hasWebGl2) {
     return (
-      `This browser offers WebGL2, and Enroute could not draw with it: ${error.message}. Update the browser and the ` +
+      `This browser offers WebGL2, but Enroute could not draw with it: ${error.message}. Update the browser and the ` +
       "driver of the graphics card, or try another current browser."
     );
   }
   const why = refusal ? ` The browser says: ${refusal}.` : "";
-  const webGpu = navigator.gpu ? "WebGPU does not work here" : "this browser offers no WebGPU";
+  const webGpu = navigator.gpu ? "WebGPU does not work in this browser" : "this browser does not offer WebGPU";
   return (
-    `Enroute draws with WebGPU or WebGL2: ${webGpu}, and WebGL2 is refused.${why} Turn on hardware acceleration in the ` +
+    `Enroute draws with WebGPU or WebGL2: ${webGpu}, and the browser refuses WebGL2.${why} Turn on hardware acceleration in the ` +
     "browser's settings, or try a current version of Chrome, Edge, Firefox or Safari."
   );
 }

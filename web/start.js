@@ -150,7 +150,7 @@ function showLoss(title, cause, error) {
   const { text, isKept } = latestText();
   const advice = isKept
     ? "Your text is saved. Reload the page to continue."
-    : "This browser stores nothing for this page. To keep your work, save your text before you reload.";
+    : "This browser does not store data for this page. To keep your work, save your text before you reload.";
   showFailure(title, `${cause} ${advice}`, error, text === null ? null : { name: "mission.rmpl", text });
 }
 

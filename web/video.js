@@ -51,14 +51,14 @@ export function createCamera(canvas) {
     async saveFilm(name) {
       const { recorder, parts } = recording ?? {};
       recording = null;
-      if (!recorder) throw new Error("no video was recorded");
+      if (!recorder) throw new Error("the browser recorded no video");
       const ended = new Promise((resolve, reject) => {
         recorder.addEventListener("stop", resolve);
         recorder.addEventListener("error", ({ error }) => reject(error ?? new Error("the browser's recorder failed")));
       });
       recorder.stop();
       await ended;
-      if (parts.length === 0) throw new Error("the browser's recorder gave no picture");
+      if (parts.length === 0) throw new Error("the browser recorded no picture");
       saveFile(name, new Blob(parts, { type: "video/webm" }));
     },
   };

@@ -1,6 +1,7 @@
 //! The integration tests of `xtask`, in one program: each module is about one thing.
 
 mod citations;
+mod commands;
 mod cycles;
 mod documentation;
 mod names;

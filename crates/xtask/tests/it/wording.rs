@@ -1,8 +1,9 @@
 //! The texts of the interface follow the writing guide: no banned words, and no label, tooltip or message that is too long.
 //!
 //! The texts are the string literals of the sources below [`FOLDERS`] and [`MORE_FOLDERS`], outside tests, attributes and
-//! reasons of panics. To check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with
-//! the reason.
+//! reasons of panics; those of the page's scripts; the help of the command line, as its reference quotes it; and the
+//! documents. To check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with the
+//! reason.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,20 +15,23 @@ use regex::Regex;
 use xtask::process::root;
 
 /// Where user-visible texts are looked for, below the root.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 8] = [
     "crates/app/src",
     "crates/display/src",
     "crates/editor/src",
     "crates/layout/src",
     "crates/panels/src",
     "crates/terrain_view/src",
+    "crates/theme/src",
     "crates/workbench/src",
 ];
 
 /// Where other texts are that users read: answers of the command line, diagnostics, reports, messages of the planner. These
 /// quote code in backticks, and have sentences such as “there is no plan”.
-const MORE_FOLDERS: [&str; 18] = [
+const MORE_FOLDERS: [&str; 22] = [
     "crates/cli/src",
+    "crates/controllability/src",
+    "crates/exact/src",
     "crates/executive/src",
     "crates/hca/src",
     "crates/interchange/src",
@@ -40,6 +44,8 @@ const MORE_FOLDERS: [&str; 18] = [
     "crates/report/src",
     "crates/review/src",
     "crates/rmpl/src",
+    "crates/snapshot/src",
+    "crates/stn/src",
     "crates/stnu/src",
     "crates/terrain/src",
     "crates/tpn/src",
@@ -48,8 +54,7 @@ const MORE_FOLDERS: [&str; 18] = [
 ];
 
 /// Documents whose prose is not checked, and why.
-const OTHER_DOCUMENTS: [(&str, &str); 3] = [
-    ("command-line.md", "help texts, which are checked in the sources"),
+const OTHER_DOCUMENTS: [(&str, &str); 2] = [
     ("key-sentences.md", "made of lessons and messages, which are checked in the sources"),
     ("specification.md", "definitions in the terms of mathematics"),
 ];
@@ -135,7 +140,7 @@ const BANNED: [(&str, &str); 46] = [
 ];
 
 /// Texts in which a banned pattern is right, by the file's end and a part of the text, and why.
-const ALLOWED: [(&str, &str, &str); 19] = [
+const ALLOWED: [(&str, &str, &str); 20] = [
     ("rmpl/src/diagnostics/undefined.rs", "usual reason", "the most frequent reason, not a default"),
     ("review/src/plan_lines.rs", "in formation behind", "a place, not a time"),
     ("executive/src/model_based/proof/product.rs", "runs of more than", "a noun, not what a tooltip does"),
@@ -154,6 +159,7 @@ const ALLOWED: [(&str, &str, &str); 19] = [
     ("terrain/src/format/pds.rs", "METRE", "a unit of the file format"),
     ("terrain/src/format/tiff/calibration.rs", "metre", "a unit of the file format"),
     ("description/typescript.rs", "", "declarations for programs, with code in backticks"),
+    ("theme/src/short.rs", "```", "a mark of Markdown"),
     ("library/template.rs", "// Three activities", "a comment of a mission, which quotes its text"),
 ];
 
@@ -361,6 +367,115 @@ fn no_text_has_a_banned_word() {
     assert!(idle.is_empty(), "these exceptions are not needed: {idle:?}");
 }
 
+/// What matches one of these patterns in a text, with what to write instead.
+fn problems(file: &str, line: usize, words: &str, patterns: &[(Regex, &str)]) -> Vec<String> {
+    let found = patterns.iter().filter(|(pattern, _)| pattern.is_match(words));
+    found.map(|(pattern, instead)| format!("{file}:{line}: {words:?} ({pattern}: {instead})")).collect()
+}
+
+/// The paragraphs of the help texts, as the reference of the command line quotes them, each option its own.
+fn help_texts(reference: &str) -> Vec<(usize, String)> {
+    let mut found: Vec<(usize, String)> = Vec::new();
+    let (mut is_help, mut continues) = (false, false);
+    for (number, line) in reference.lines().enumerate() {
+        if line.starts_with("```") {
+            (is_help, continues) = (!is_help, false);
+            continue;
+        }
+        let words = line.trim();
+        let starts = line.starts_with(' ') && (words.starts_with('-') || !line.starts_with("     "));
+        match found.last_mut() {
+            _ if !is_help || words.is_empty() => continues = false,
+            Some((_, paragraph)) if continues && !starts => *paragraph += &format!(" {words}"),
+            _ => {
+                found.push((number + 1, words.to_owned()));
+                continues = true;
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_help_text_has_a_banned_word() {
+    // A description must not start as a tooltip must not, so it is held without its option.
+    static OPTION: LazyLock<Regex> =
+        LazyLock::new(|| Regex::new(r"^-[^ ]*( [A-Z<][^ ]*|, --[^ ]+)*  +").expect("a pattern"));
+    let example = "```text\nPlan\nit\n\nOptions:\n  --all  List\n          all\n  -h     Help\n```\nout\n";
+    let expected = [(2, "Plan it"), (5, "Options:"), (6, "--all  List all"), (8, "-h     Help")];
+    assert_eq!(help_texts(example), expected.map(|(line, words)| (line, words.to_owned())));
+    let file = "docs/command-line.md";
+    let texts = help_texts(&fs::read_to_string(root().join(file)).expect("the reference"));
+    assert!(texts.len() > 300, "only {} texts", texts.len());
+    let patterns = patterns(&BANNED);
+    let wrong =
+        texts.iter().flat_map(|(line, words)| problems(file, *line, &OPTION.replace(words, ""), &patterns));
+    let wrong: Vec<String> = wrong.collect();
+    assert!(wrong.is_empty(), "{} texts:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// The texts of a script: its string literals that have several words, each placeholder as `{}`.
+fn script_texts(script: &str) -> Vec<(usize, String)> {
+    static LITERAL: LazyLock<Regex> =
+        LazyLock::new(|| Regex::new(r#""((?:[^"\\]|\\.)*)"|`((?:[^`\\]|\\.)*)`"#).expect("a pattern"));
+    static HOLE: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"\$\{[^}]*\}").expect("a pattern"));
+    let is_code = |line: &&str| !["//", "/*", "*"].iter().any(|comment| line.trim().starts_with(comment));
+    let mut found = Vec::new();
+    for (number, line) in script.lines().enumerate().filter(|(_, line)| is_code(line)) {
+        for literal in LITERAL.captures_iter(line) {
+            let words = literal.get(1).or(literal.get(2)).map_or("", |words| words.as_str());
+            let words = HOLE.replace_all(words, "{}");
+            if words.contains(' ') && words.contains(char::is_alphabetic) {
+                found.push((number + 1, words.into_owned()));
+            }
+        }
+    }
+    found
+}
+
+/// The texts of a page in HTML: what is between its tags, and what describes it to assistive technology and search engines.
+fn page_texts(html: &str) -> Vec<(usize, String)> {
+    static TEXT: LazyLock<Regex> = LazyLock::new(|| {
+        Regex::new(
+            r#">([^<>]*[A-Za-z][^<>]*)<|(?:aria-label|title|alt|name="description" content)="([^"]*)""#,
+        )
+        .expect("a pattern")
+    });
+    let of_line = |(number, line): (usize, &str)| {
+        let texts =
+            TEXT.captures_iter(line).filter_map(|text| text.get(1).or(text.get(2)).map(|it| it.as_str()));
+        texts.map(|words| (number + 1, words.to_owned())).collect::<Vec<_>>()
+    };
+    html.lines().enumerate().flat_map(of_line).collect()
+}
+
+#[test]
+fn no_text_of_the_page_s_own_files_has_a_banned_word() {
+    let script = "// \"not this\"\nthrow new Error(`is ${kind} here`, \"no\", \"and this\");\n";
+    assert_eq!(script_texts(script), [(2, "is {} here".to_owned()), (2, "and this".to_owned())]);
+    let html = "<p id=\"a\">Loading…</p>\n<img alt=\"A map\">\n";
+    assert_eq!(page_texts(html), [(1, "Loading…".to_owned()), (2, "A map".to_owned())]);
+    let patterns: Vec<(Regex, &str)> =
+        [patterns(&BANNED), patterns(&BANNED_IN_THE_INTERFACE)].into_iter().flatten().collect();
+    let (mut count, mut wrong) = (0, Vec::new());
+    for (path, text) in crate::citations::texts() {
+        let name = path.to_string_lossy().replace('\\', "/");
+        let is_script =
+            name.starts_with("web/") && path.extension().is_some_and(|extension| extension == "js");
+        for (line, words) in if is_script { script_texts(&text) } else { Vec::new() } {
+            count += 1;
+            wrong.extend(problems(&name, line, &words, &patterns));
+        }
+    }
+    let html = fs::read_to_string(root().join("index.html")).expect("the page");
+    for (line, words) in page_texts(&html) {
+        count += 1;
+        wrong.extend(problems("index.html", line, &words, &patterns));
+    }
+    assert!(count > 45, "only {count} texts");
+    assert!(wrong.is_empty(), "{} texts:\n{}", wrong.len(), wrong.join("\n"));
+}
+
 #[test]
 fn no_label_tooltip_or_toast_is_too_long() {
     let mut wrong = Vec::new();
@@ -395,17 +510,39 @@ fn lines(markdown: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// The prose of a Markdown text, line by line, without code and the targets of links.
-fn prose(markdown: &str) -> Vec<(usize, String)> {
-    lines(markdown)
-        .map(|(number, line)| (number, CODE_OR_TARGET.replace_all(line, "").into_owned()))
-        .collect()
+/// The prose of a Markdown text by paragraphs and items of lists, whose lines are joined, with their first lines. Headings
+/// and rows of tables are their own.
+fn paragraphs(markdown: &str) -> Vec<(usize, String)> {
+    static ITEM: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"^([*-]|\d+\.)\s").expect("a pattern"));
+    let mut found: Vec<(usize, String)> = Vec::new();
+    let mut last_line = None;
+    for (line, words) in lines(markdown) {
+        let words = words.trim();
+        let is_own = words.starts_with(['#', '|', '<']);
+        let continues = last_line == Some(line - 1) && !is_own && !ITEM.is_match(words);
+        match found.last_mut() {
+            _ if words.is_empty() => {}
+            Some((_, paragraph)) if continues => {
+                paragraph.push(' ');
+                paragraph.push_str(words);
+            }
+            _ => found.push((line, words.to_owned())),
+        }
+        last_line = (!words.is_empty() && !is_own).then_some(line);
+    }
+    for (_, paragraph) in &mut found {
+        *paragraph = CODE_OR_TARGET.replace_all(paragraph, "").into_owned();
+    }
+    found
 }
 
 #[test]
-fn prose_has_neither_code_nor_targets() {
-    let lines = prose("A `behind` [link](behind.md).\n```\nbehind\n```\nEnd\n");
-    assert_eq!(lines, [(1, "A  [link.".to_owned()), (5, "End".to_owned())]);
+fn paragraphs_have_neither_code_nor_targets() {
+    let found =
+        paragraphs("# A\nb `behind` [link](behind.md)\nc\n```\nbehind\n```\n* d\n  e\n* f\n| g |\nh\n\ni\n");
+    let expected =
+        [(1, "# A"), (2, "b  [link c"), (7, "* d e"), (9, "* f"), (10, "| g |"), (11, "h"), (13, "i")];
+    assert_eq!(found, expected.map(|(line, words)| (line, words.to_owned())));
 }
 
 /// The documents that people read, with their texts, without those of [`OTHER_DOCUMENTS`].
@@ -436,7 +573,7 @@ fn no_document_for_users_has_a_banned_word() {
     let patterns: Vec<(Regex, &str)> = patterns.collect();
     let mut wrong = Vec::new();
     for (name, text) in documents() {
-        for (line, words) in prose(&text) {
+        for (line, words) in paragraphs(&text) {
             for (pattern, instead) in patterns.iter().filter(|(pattern, _)| pattern.is_match(&words)) {
                 // The word is in quotes where its meaning is explained.
                 if !words.contains("“nature”") {
@@ -445,7 +582,7 @@ fn no_document_for_users_has_a_banned_word() {
             }
         }
     }
-    assert!(wrong.is_empty(), "{} lines:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(wrong.is_empty(), "{} paragraphs:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 /// The most words of a sentence in a document.
@@ -458,29 +595,12 @@ const LONG_SENTENCES: [(&str, &str); 2] =
 /// The sentences of a document's paragraphs and lists, with the line where each paragraph starts; without tables.
 fn sentences(markdown: &str) -> Vec<(usize, String)> {
     static END: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"[.!?][)”*]*\s+").expect("a pattern"));
-    static ITEM: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"^([*-]|\d+\.)\s").expect("a pattern"));
-    let mut paragraphs: Vec<(usize, String)> = Vec::new();
-    let mut last_line = 0;
-    for (line, words) in lines(markdown) {
-        let words = words.trim();
-        if words.is_empty() || words.starts_with(['#', '|', '<']) {
-            continue;
-        }
-        match paragraphs.last_mut() {
-            Some((_, paragraph)) if line == last_line + 1 && !ITEM.is_match(words) => {
-                paragraph.push(' ');
-                paragraph.push_str(words);
-            }
-            _ => paragraphs.push((line, words.to_owned())),
-        }
-        last_line = line;
-    }
-    let split = |(line, paragraph): &(usize, String)| {
-        let prose = CODE_OR_TARGET.replace_all(paragraph, "");
-        let ended = END.replace_all(&prose, "$0\n");
-        ended.lines().map(|sentence| (*line, sentence.trim().to_owned())).collect::<Vec<_>>()
+    let split = |(line, paragraph): (usize, String)| {
+        let ended = END.replace_all(&paragraph, "$0\n");
+        ended.lines().map(|sentence| (line, sentence.trim().to_owned())).collect::<Vec<_>>()
     };
-    paragraphs.iter().flat_map(split).collect()
+    let is_prose = |(_, paragraph): &(usize, String)| !paragraph.starts_with(['#', '|', '<']);
+    paragraphs(markdown).into_iter().filter(is_prose).flat_map(split).collect()
 }
 
 #[test]
