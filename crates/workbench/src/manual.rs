@@ -45,6 +45,7 @@ const GROUPS: &[(&str, &[(&str, &str)])] = &[
     (
         "How-to guides",
         &[
+            ("install", include_str!("../../../docs/install.md")),
             ("missions", include_str!("../../../docs/missions.md")),
             ("fix-no-plan", include_str!("../../../docs/fix-no-plan.md")),
             ("resources-and-objectives", include_str!("../../../docs/resources-and-objectives.md")),
@@ -53,6 +54,7 @@ const GROUPS: &[(&str, &[(&str, &str)])] = &[
             ("simulation", include_str!("../../../docs/simulation.md")),
             ("robustness", include_str!("../../../docs/robustness.md")),
             ("reviews", include_str!("../../../docs/reviews.md")),
+            ("embed", include_str!("../../../docs/embed.md")),
             ("lessons", include_str!("../../../docs/lessons.md")),
             ("troubleshooting", include_str!("../../../docs/troubleshooting.md")),
         ],
@@ -94,8 +96,10 @@ const GROUPS: &[(&str, &[(&str, &str)])] = &[
             ("language", include_str!("../../../docs/language.md")),
             ("control-programs", include_str!("../../../docs/control-programs.md")),
             ("esterel", include_str!("../../../docs/esterel.md")),
+            ("command-line", include_str!("../../../docs/command-line.md")),
             ("files", include_str!("../../../docs/files.md")),
             ("browsers", include_str!("../../../docs/browsers.md")),
+            ("accessibility", include_str!("../../../docs/accessibility.md")),
             ("glossary", include_str!("../../../assets/glossary.md")),
             ("specification", include_str!("../../../docs/specification.md")),
         ],
