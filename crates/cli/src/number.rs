@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 /// A reader of whole numbers in `range`, for an option.
-pub fn whole_number<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
+pub fn number_in<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
 where
     T: Copy + Into<u64> + PartialOrd + std::str::FromStr + Send + Sync,
 {
@@ -18,12 +18,12 @@ where
 
 /// A seed: any whole number that has 64 bits.
 pub fn seed(text: &str) -> Result<u64, String> {
-    whole_number(0..=u64::MAX)(text)
+    number_in(0..=u64::MAX)(text)
 }
 
 /// A number of at least 1.
 pub fn positive_number(text: &str) -> Result<u32, String> {
-    whole_number(1..=u32::MAX)(text)
+    number_in(1..=u32::MAX)(text)
 }
 
 /// A number with its digits in groups of three: `10,000`.
@@ -45,10 +45,7 @@ mod tests {
         for wrong in ["x", "-1", "1.5", "", "18446744073709551616"] {
             assert_eq!(seed(wrong), Err(accepted.to_owned()), "{wrong}");
         }
-        assert_eq!(
-            whole_number(1..=1_000_u32)("0"),
-            Err("expected a whole number from 1 to 1,000".to_owned())
-        );
+        assert_eq!(number_in(1..=1_000_u32)("0"), Err("expected a whole number from 1 to 1,000".to_owned()));
         assert_eq!(positive_number("7"), Ok(7));
     }
 }

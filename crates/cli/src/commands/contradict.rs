@@ -20,7 +20,7 @@ use crate::commands::report::read_rules;
 use crate::commands::verify::without_path_vertices;
 use crate::deadline::{Undecided, parse_seconds};
 use crate::input::read_json;
-use crate::number::{seed, whole_number};
+use crate::number::{number_in, seed};
 use crate::output::{Format, NO, YES, column, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
 
@@ -41,10 +41,10 @@ pub struct Args {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = parse_seconds)]
     budget: f64,
     /// Maximum number of schedules to try: the earliest, the latest, and random ones.
-    #[arg(long, value_name = "N", default_value_t = Effort::default().schedules, value_parser = whole_number(0..=u64::MAX))]
+    #[arg(long, value_name = "N", default_value_t = Effort::default().schedules, value_parser = number_in(0..=u64::MAX))]
     schedules: u64,
     /// Maximum number of undisturbed runs to try; vehicles drive in them.
-    #[arg(long, value_name = "N", default_value_t = Effort::default().runs, value_parser = whole_number(0..=u64::MAX))]
+    #[arg(long, value_name = "N", default_value_t = Effort::default().runs, value_parser = number_in(0..=u64::MAX))]
     runs: u64,
     /// Seed for random schedules and runs.
     #[arg(long, default_value_t = 0, value_parser = seed)]

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::import_models::{import_jmpl, import_pamela};
 use crate::input::read_text;
-use crate::number::whole_number;
+use crate::number::number_in;
 use crate::output::{Format, YES, document, exit, print_error, print_json, print_text, print_verbatim};
 
 /// Convert a file of another tool.
@@ -27,7 +27,7 @@ pub struct Args {
     /// Problem of the PDDL domain; more files of a JMPL model (.jmpl, .hrn, .ini), or folders of them.
     more: Vec<PathBuf>,
     /// How often each action may happen (PDDL) [default: 1].
-    #[arg(long, value_name = "N", value_parser = whole_number(1..=pddl::MAX_TIMES))]
+    #[arg(long, value_name = "N", value_parser = number_in(1..=pddl::MAX_TIMES))]
     times: Option<u32>,
     /// Leave out the metric: any plan counts, which is found sooner (PDDL).
     #[arg(long)]

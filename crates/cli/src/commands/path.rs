@@ -19,7 +19,7 @@ use terrain::{ConfigurationSpace, GridFrame, Occupancy};
 use crate::deadline::TimeLimit;
 use crate::ground::{LARGEST_MAP_BYTES, with_label};
 use crate::input::{folder_of, read_bytes};
-use crate::number::{positive_number, seed, whole_number};
+use crate::number::{number_in, positive_number, seed};
 use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text, without_timings};
 
 /// Find a path on a map of obstacles.
@@ -57,7 +57,7 @@ pub struct Args {
     #[command(flatten)]
     time_limit: TimeLimit,
     /// Search N times, each with the next seed, and list all runs.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=1_000_000_u32))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number_in(1..=1_000_000_u32))]
     repeat: u32,
     /// Don't shorten the path.
     #[arg(long)]

@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use crate::commands::prove_rules::{self, Call};
 use crate::commands::run::{KnowledgeArg, read_system};
 use crate::deadline::TimeLimit;
-use crate::number::{positive_number, seed, whole_number};
+use crate::number::{number_in, positive_number, seed};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 use crate::target::Target;
 
@@ -36,7 +36,7 @@ pub struct Args {
     #[arg(long, short, value_name = "PLAN.json", requires = "rules")]
     output: Option<PathBuf>,
     /// Stop after N alternatives for each rule (exit status 3).
-    #[arg(long, value_name = "N", default_value_t = ALTERNATIVES, requires = "rules", value_parser = whole_number(1..=u64::MAX))]
+    #[arg(long, value_name = "N", default_value_t = ALTERNATIVES, requires = "rules", value_parser = number_in(1..=u64::MAX))]
     alternatives: u64,
     /// Seed for path planning in a mission.
     #[arg(long, default_value_t = 0, requires = "rules", value_parser = seed)]
@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long, value_name = "PROPERTY")]
     property: Vec<String>,
     /// Let components fail at most N times in a run.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(0..=u32::MAX))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = number_in(0..=u32::MAX))]
     faults: u32,
     /// What the program knows of its plant.
     #[arg(long, value_enum, default_value_t)]
@@ -57,10 +57,10 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = positive_number)]
     states: u32,
     /// Explore runs of at most N steps [default: no limit].
-    #[arg(long, value_name = "N", value_parser = whole_number(0..=u32::MAX))]
+    #[arg(long, value_name = "N", value_parser = number_in(0..=u32::MAX))]
     steps: Option<u32>,
     /// Also compute the probability that the program ends within N steps.
-    #[arg(long, value_name = "N", value_parser = whole_number(0..=u32::MAX))]
+    #[arg(long, value_name = "N", value_parser = number_in(0..=u32::MAX))]
     chance: Option<u32>,
     #[command(flatten)]
     time_limit: TimeLimit,

@@ -15,7 +15,7 @@ use snapshot::{RobustnessSettings, Tally, Uncertainty};
 use crate::deadline::{TimeIsUp, TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};
-use crate::number::{seed, whole_number};
+use crate::number::{number_in, seed};
 use crate::output::{Format, NO, YES, document, escaped, exit, print_json, print_text, print_verbatim};
 use crate::target::Target;
 
@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "file")]
     merge: Vec<PathBuf>,
     /// Number of runs, over all shards.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole_number(1..=u64::MAX))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = number_in(1..=u64::MAX))]
     runs: u64,
     /// Seed for runs. Run i is identical in every shard.
     #[arg(long, alias = "seed", value_name = "SEED", default_value_t = 0, value_parser = seed)]

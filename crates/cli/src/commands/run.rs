@@ -17,7 +17,7 @@ use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_control;
-use crate::number::{positive_number, seed, whole_number};
+use crate::number::{number_in, positive_number, seed};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// So many states before a step may be named as those that states come from.
@@ -53,7 +53,7 @@ pub struct Args {
     #[arg(long)]
     trajectories: bool,
     /// Run N times with random faults and report the success rate.
-    #[arg(long, value_name = "N", value_parser = whole_number(1..=u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = number_in(1..=u64::MAX))]
     monte_carlo: Option<u64>,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
