@@ -158,7 +158,7 @@ impl Objection {
             (Self::NotSigner, _) => "only the person who signed an entry can withdraw it",
             (Self::Permanent, _) => "only comments, acknowledgments, waivers and approvals can be withdrawn",
             (Self::NotConcerned, _) => {
-                "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
+                "only the author or the addressee of a comment can resolve or reopen it"
             }
         }
     }

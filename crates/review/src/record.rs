@@ -363,7 +363,7 @@ impl Record {
         for (digest, subject) in subjects {
             let subject = Sealed::<Subject>::read(subject).map_err(damaged)?;
             if subject.digest() != digest {
-                let what = format!("what was approved as {} is not what is there now", short(&digest));
+                let what = format!("the approved subject {} has been changed", short(&digest));
                 return Err(RecordError::Broken(what));
             }
             record.subjects.insert(digest, subject);

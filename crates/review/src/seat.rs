@@ -65,7 +65,7 @@ pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
             Some("a role needs 1 to 9 approvals")
         }
         _ if board.iter().any(has_too_few_people) => {
-            Some("a role that names people must name each once, and at least as many as it needs approvals")
+            Some("a role must name each person once, and at least as many people as it needs approvals")
         }
         _ => None,
     }

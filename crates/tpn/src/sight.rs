@@ -37,7 +37,9 @@ impl Hidden {
                     self.place
                 )
             }
-            None => format!("from {} the map does not have the heights to decide it", self.place),
+            None => {
+                format!("from {} the map has too little height data to decide the line of sight", self.place)
+            }
         }
     }
 }

@@ -44,7 +44,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "causal-links",
         title: "Causal links",
-        about: "A drive needs light for as long as it lasts, and a causal link shows what gives it.",
+        about: "A drive needs light throughout; a causal link shows which assertion supports it.",
         source: include_str!("../../../assets/missions/causal-links.rmpl"),
     },
     Example {
@@ -80,13 +80,13 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "controllability",
         title: "Consistent but not controllable",
-        about: "Everything fits together, and yet no plan holds for every duration of the drive.",
+        about: "All bounds are consistent, but no plan works for every duration of the drive.",
         source: include_str!("../../../assets/missions/controllability.rmpl"),
     },
     Example {
         name: "storm",
         title: "Storm with an uncertain start",
-        about: "A survey must end before a storm that starts when it likes.",
+        about: "A survey must end before a storm whose start is uncertain.",
         source: include_str!("../../../assets/missions/storm.rmpl"),
     },
     Example {

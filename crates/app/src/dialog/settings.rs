@@ -146,6 +146,6 @@ fn text_and_terrain(ui: &mut Ui, context: &Context<'_>, views: &mut Views) {
         }
     });
     ui.add_space(space::S);
-    let note = "Each panel has more under Show.";
+    let note = "For more options, open Show in a panel.";
     ui.label(RichText::new(note).small().color(context.tokens.text_muted));
 }

@@ -92,7 +92,7 @@ impl<'file> Instances<'file> {
         let (at, other) = fitting.next().filter(|_| !called.is_empty() && fitting.next().is_none())?;
         let name = classes[class].name;
         self.remarks
-            .push(format!("no field makes a `{name}`: its argument `{argument}` is a `{}`", other.name));
+            .push(format!("no field creates a `{name}`: its argument `{argument}` is a `{}`", other.name));
         Some(at)
     }
 

@@ -65,7 +65,7 @@ fn what_a_mission_cannot_mean_is_left_out_with_its_line() {
         ("(plant.c)", "unknown method `plant.c`"),
         ("(plant.b)", "`plant.b` takes 1 arguments, but has 0 here"),
         ("(plant.a :bounds [6 7])", "the method's own bounds exclude them"),
-        ("(plant.a :bounds (lvar \"later\"))", "known only while a plan runs"),
+        ("(plant.a :bounds (lvar \"later\"))", "`lvar` bounds without initial values"),
         ("(ask (> level 3))", "the condition `(> …)`"),
         ("word", "expected a statement"),
     ] {
@@ -106,7 +106,7 @@ fn values_that_calls_give_are_values_of_the_state() {
     assert_eq!(read.left_out, [""; 0]);
     has(&read, "state lamp : {mine, off} = off;");
     has(&read, "state place : {home, mine, unknown} = unknown;");
-    has(&read, "// Note: no field makes a `main`: its argument `robot` is a `plant`");
+    has(&read, "// Note: no field creates a `main`: its argument `robot` is a `plant`");
 }
 
 #[test]

@@ -14,7 +14,9 @@ pub enum PddlError {
     Said { place: String, what: &'static str },
     #[error("{place} mentions `{name}`, which is not an object; declare it in :objects or :constants")]
     Unknown { place: String, name: String },
-    #[error("`{name}` is not a name in RMPL; rename it: letters, digits, and single `-` and `_` inside")]
+    #[error(
+        "`{name}` is not a name in RMPL; rename it with letters, digits, and single `-` or `_` between them"
+    )]
     Name { name: String },
     #[error("the problem belongs to the domain `{wanted}`, but the domain is called `{found}`")]
     OtherDomain { wanted: String, found: String },

@@ -207,7 +207,7 @@ impl Trial {
             Some(Made::New { times, is_extreme }) => (times, is_extreme),
             Some(Made::Impossible(activity, duration)) => {
                 self.num_schedules += 1;
-                let text = format!("{activity} lasts {} in no schedule", duration.readable());
+                let text = format!("no schedule lets {activity} last {}", duration.readable());
                 for tried in self.declared_durations() {
                     tried.schedules += 1;
                     let script = Script::default();

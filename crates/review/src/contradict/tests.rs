@@ -130,7 +130,7 @@ fn durations_are_tried_at_their_declared_ends() {
     let free = of("30");
     assert_eq!((free.verdict(), free.schedules), (Verdict::Survived, 6), "two ends of three activities");
     let tight = of("10");
-    assert_eq!(tight.sentence(), "contradicted: A#1 lasts 10 in no schedule");
+    assert_eq!(tight.sentence(), "contradicted: no schedule lets A#1 last 10");
 }
 
 /// A battery that is charged while a rover that consumes it drives.

@@ -11,8 +11,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Note,
     title: "activities that differ only in a vehicle or a location",
-    meaning: "Several activities are the same but for their names and one vehicle or one location. One activity with a
-parameter says the same. The quick fix merges the activities and changes their calls.",
+    meaning: "Several activities differ only in name and in one vehicle or location. One activity with a parameter can
+replace them. The quick fix merges the activities and changes their calls.",
     example: "location BASE (0, 0);
 vehicle R1 : ATRV at BASE;
 vehicle R2 : ATRV at BASE;

@@ -72,7 +72,7 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
 /// A model with the name of a built-in one.
 pub(crate) fn built_in_model(name: &Name) -> Diagnostic {
     Diagnostic::error(CODE, name.span, format!("`{}` is a built-in model", name.text))
-        .with_hint(format!("choose another name; `extends {}` keeps what it can do", name.text))
+        .with_hint(format!("choose another name; `extends {}` inherits its properties", name.text))
 }
 
 /// A resource or a state of a model that an extended model has.

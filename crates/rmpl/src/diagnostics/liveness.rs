@@ -13,7 +13,7 @@ pub const EXPLANATION: Explanation = Explanation {
     title: "control program waits forever",
     meaning: "The program ends if no component fails. After one or two faults that no command can repair, the
 program waits for a goal or a condition that never becomes true. While you type, Enroute also warns of goals, conditions and locks
-that are waited for, and come in no run.",
+that no run reaches.",
     example: "(PARALLEL (Engine = Firing))
 (DEFCLASS Engine () (COMMAND cmd {none fire}) (MODE Off true) (MODE Firing true) (MODE Failed true)
   (TRANSITION Off Firing (cmd = fire)) (FAULT Off Failed 0.01))
@@ -27,12 +27,12 @@ that are waited for, and come in no run.",
 
 /// A goal, a condition or a lock that is waited for and comes in no run.
 pub fn never(label: &str, span: Span) -> Diagnostic {
-    let (verb, what) = match label.split_once(' ') {
-        Some(("assert", goal)) => ("is achieved", format!("the goal {goal}")),
-        Some(("lock", constraint)) => ("is granted", format!("the lock {constraint}")),
-        Some((_, condition)) => ("holds", format!("the condition {condition}")),
-        None => ("ends", label.to_owned()),
+    let never = match label.split_once(' ') {
+        Some(("assert", goal)) => format!("no run achieves {goal}"),
+        Some(("lock", constraint)) => format!("no run grants the lock {constraint}"),
+        Some((_, condition)) => format!("no run makes {condition} true"),
+        None => format!("{label} never ends"),
     };
-    Diagnostic::warning(CODE, span, format!("{what} {verb} in no run, so this waits forever"))
+    Diagnostic::warning(CODE, span, format!("{never}: this waits forever"))
         .with_hint("correct it, or enclose it in TIMEOUT or DO-WATCHING")
 }

@@ -14,8 +14,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
     title: "bounds without effect",
-    meaning: "These bounds exclude no duration that is possible anyway. Common causes are bounds on the wrong part, or a
-time in the wrong unit.",
+    meaning: "The activities already stay within these bounds, so the bounds have no effect. Common causes are bounds on the
+wrong part, or a time in the wrong unit.",
     example: "primitive Drive()[20,30];
 scenario Day[0,60] = { Drive()[10,40] }",
     fix: "Remove the bounds, or correct them.",

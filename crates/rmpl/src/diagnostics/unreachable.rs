@@ -13,8 +13,8 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Warning,
     title: "unreachable mode or part",
     meaning: "No component starts in this mode, and no transition or fault leads to it from where components start. Only a fault that is
-injected by hand can bring a component there. While you type, Enroute also warns of parts of a control program that are active in
-no run.",
+injected by hand can bring a component there. While you type, Enroute also warns of parts of a control program that no run
+reaches.",
     example: "(DEFCLASS Valve () (COMMAND cmd {none open}) (MODE Closed true) (MODE Open true) (MODE Stuck true)
   (TRANSITION Closed Open (cmd = open)))
 (DEFINSTANCE V Valve INIT Closed)",
@@ -33,6 +33,6 @@ pub fn mode(class: &str, mode: &str, span: Span) -> Diagnostic {
 
 /// A part of a control program that no run comes to.
 pub fn part(span: Span) -> Diagnostic {
-    Diagnostic::warning(CODE, span, "this part of the program is active in no run, with or without failures")
+    Diagnostic::warning(CODE, span, "no run reaches this part of the program, with or without faults")
         .with_hint("remove it, or correct what comes before it")
 }

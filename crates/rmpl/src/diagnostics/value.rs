@@ -103,7 +103,7 @@ pub(crate) fn level_told(resource: &str, span: Span) -> Diagnostic {
 
 /// A level after `watching`, which asserts that something does not hold.
 pub(crate) fn level_watched(resource: &str, span: Span) -> Diagnostic {
-    let message = format!("the level of `{resource}` follows from activities, so nothing can watch for it");
+    let message = format!("the level of `{resource}` follows from activities, so `watching` cannot use it");
     Diagnostic::error(CODE, span, message)
         .with_hint("write `maintaining` and the opposite comparison to require it")
 }

@@ -414,8 +414,8 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         }
         "import" => "`import \"file\";`: includes the declarations of another file of the mission.",
         "model" | "extends" => {
-            "`model M extends N { … }`: what vehicles of M can do, and the resources and states that each of them has. What M \
-             does not say, N says."
+            "`model M extends N { … }`: what vehicles of M can do, and the resources and states that each of them has. M \
+             inherits the rest from N."
         }
         "group" => {
             "`group G = R1, S, A;`: vehicles, fleets, locations, values or groups, for `any` and `each`."

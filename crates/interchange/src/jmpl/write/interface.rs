@@ -100,9 +100,9 @@ impl<'file> Writer<'file> {
             let all = components.values().filter(has).count();
             if paths.len() < all {
                 let remark = format!(
-                    "the harness says of {} of {all} components that their `{}` is {what}; it is {what} in all of them",
-                    paths.len(),
-                    key.1
+                    "the harness lists `{}` as {what} for {} of {all} components; Enroute treats it as {what} for all",
+                    key.1,
+                    paths.len()
                 );
                 self.evaluator.remark(remark);
             }
@@ -122,7 +122,7 @@ impl<'file> Writer<'file> {
         if self.harness.initial.is_empty() {
             if !self.starts.is_empty() {
                 self.evaluator.remark(
-                    "no file says in which modes components start (.ini): each one starts in the first mode that no failure leads to"
+                    "no .ini file gives initial modes: each component starts in the first mode that no failure leads to"
                         .to_owned(),
                 );
             }

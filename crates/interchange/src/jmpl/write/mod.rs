@@ -131,7 +131,8 @@ impl<'file> Writer<'file> {
         for (class, place) in self.evaluator.names.again.clone() {
             // A library may have classes that the model replaces.
             if place.file < self.asked_files && self.needed.iter().any(|known| known.name == class) {
-                self.evaluator.leave_out(place, format!("another class `{class}`; the first one counts"));
+                self.evaluator
+                    .leave_out(place, format!("class `{class}` is declared again; the first one is used"));
             }
         }
         for class in self.needed.clone() {
@@ -374,7 +375,7 @@ impl<'file> Writer<'file> {
         let unknown = [from, to].into_iter().find(|mode| !modes.contains(&mode.as_str()) && **mode != "*");
         if let Some(mode) = unknown.or_else(|| Some(to).filter(|to| **to == "*")) {
             let what = match mode.as_str() {
-                "*" | "+" | "." => format!("this {kind}: `{mode}` in this place"),
+                "*" | "+" | "." => format!("this {kind}: `{mode}` is not supported here"),
                 _ => format!("this {kind}: `{}` has no mode `{mode}`", class.name),
             };
             self.evaluator.leave_out(arc.place, what);

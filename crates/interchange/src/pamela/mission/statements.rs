@@ -194,7 +194,7 @@ impl<'file> Writer<'file> {
             }
         }
         if alternatives.is_empty() {
-            return Err("no choice can be read".to_owned());
+            return Err("no alternative of this choice could be converted".to_owned());
         }
         Ok(format!("choose {{ {} }}", alternatives.join(", ")))
     }
@@ -301,12 +301,9 @@ impl<'file> Writer<'file> {
             Some(("lvar", parts)) => {
                 let bounds = parts.iter().find(|part| part.vector().is_some());
                 if bounds.is_some() {
-                    self.remark("bounds that may change while a plan runs (`lvar`) are those of the start");
+                    self.remark("`lvar` bounds are fixed to their initial values");
                 } else {
-                    self.leave_out(
-                        tree.line(),
-                        "bounds that are known only while a plan runs (`lvar`)".to_owned(),
-                    );
+                    self.leave_out(tree.line(), "`lvar` bounds without initial values".to_owned());
                 }
                 bounds?
             }

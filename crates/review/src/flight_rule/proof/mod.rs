@@ -336,7 +336,7 @@ impl Proof<'_, '_> {
                     }
                     excluded.push(choices);
                     if excluded.len() > MAX_CANDIDATES {
-                        return Found::Open(open.unwrap_or_else(|| "too many plans come close".to_owned()));
+                        return Found::Open(open.unwrap_or_else(|| "too many candidate plans".to_owned()));
                     }
                 }
                 (Status::Plan | Status::NoPlan, _) if is_complete => {
