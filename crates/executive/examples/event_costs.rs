@@ -1,4 +1,4 @@
-//! Measures what executing an event costs, in missions of several shapes and sizes: the table of `docs/benchmarks.md`.
+//! Measures what executing an event costs, in missions of several shapes and sizes: the table of `docs/evidence/benchmarks.md`.
 //! `cargo run -p executive --release --example event_costs`, with the greatest number of activities as an argument.
 
 #![expect(clippy::print_stdout, reason = "the figures are this program's answer")]

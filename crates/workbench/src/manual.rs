@@ -348,8 +348,7 @@ mod tests {
     }
 
     /// Documents for developers, which are not in the manual.
-    const OF_THE_REPOSITORY: [&str; 6] =
-        ["contracts.md", "benchmarks.md", "key-sentences.md", "decisions/", "evidence/", "../tests/suite"];
+    const OF_THE_REPOSITORY: [&str; 4] = ["contracts.md", "decisions/", "evidence/", "../tests/suite"];
 
     #[test]
     fn links_of_the_manual_stay_in_the_manual() {

@@ -1,4 +1,4 @@
-//! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `docs/key-sentences.md`, and each held
+//! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `docs/evidence/key-sentences.md`, and each held
 //! against what the search did: against the network, the choices after it, and the list of all plans.
 
 use std::collections::BTreeSet;
@@ -287,13 +287,13 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
     {
         assert!(kinds.contains(kind), "no {kind} among {kinds:?}");
     }
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/key-sentences.md");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/evidence/key-sentences.md");
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
         std::fs::write(file, &listing).expect("the listing can be written");
     }
     let kept = std::fs::read_to_string(file).unwrap_or_default();
     assert!(
         listing == kept,
-        "docs/key-sentences.md is not what the test finds: run it with UPDATE_SNAPSHOTS=1 to update the file"
+        "docs/evidence/key-sentences.md is not what the test finds: run it with UPDATE_SNAPSHOTS=1 to update the file"
     );
 }
