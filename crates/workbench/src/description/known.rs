@@ -8,6 +8,7 @@ use tpn::{Network, NodeId, Plan};
 
 use super::program::ProgramVerdict;
 use super::{Description, PlantState};
+use crate::lesson::StepTarget;
 use crate::state::automaton::{Moment, PlantMoment, Program};
 use crate::state::diagnosing::{Diagnosing, StepConflicts};
 use crate::state::lesson::Predictions;
@@ -97,6 +98,12 @@ impl<'a> Description<'a> {
 
     pub(super) fn counts(&self, which: &str) -> Option<Counts> {
         Some(Counts::of(self.recording(which)?.trace()))
+    }
+
+    /// A step of the search that is looked at, as a lesson names it, with its search.
+    pub(super) fn step_called(&self, name: &str) -> Option<(Recording, usize)> {
+        let step = self.state.step_of(&StepTarget::read(name).ok()?)?;
+        Some((self.recording("")?, step))
     }
 
     /// The step that is looked at, with its search.

@@ -48,6 +48,9 @@ const fn fact(name: &'static str, of: Of, meaning: &'static str) -> Fact {
 /// What a count is of.
 const WHICH: Of = Of::Maybe("chronological");
 
+/// A step of a search, as a lesson names it.
+const STEP: Of = Of::Something("first failure");
+
 /// The first search, or that of a planner.
 const SEARCH: Of = Of::Maybe("rrt-star");
 
@@ -89,6 +92,8 @@ const FACTS: &[Fact] = &[
         Of::Something("Image#1, Send#1"),
         "whether the planner ordered a condition or a resource use of the first activity before one of the second",
     ),
+    fact("consumes", Of::Something("Send#1"), "how much of a resource an activity consumes"),
+    fact("produces", Of::Something("Image#1"), "how much of a resource an activity produces"),
     fact("least", Of::Something("Battery"), "the lowest level in any schedule of the plan"),
     fact("greatest", Of::Something("Battery"), "the highest level, or the peak use, in any schedule"),
     fact("end", Of::Nothing, "the earliest end of the mission"),
@@ -120,6 +125,8 @@ const FACTS: &[Fact] = &[
     fact("states", WHICH, "how many states it entered"),
     fact("backtracks", WHICH, "how often it returned to an earlier choice"),
     fact("failures", WHICH, "how many failures it met"),
+    fact("failures-before", STEP, "how many failures it meets before a step"),
+    fact("next-decision", STEP, "the decision that gets an alternative after a step"),
     fact("propagations", WHICH, "how often it propagated bounds"),
     fact("count", Of::Something("threat"), "how many steps of a kind the search has"),
     fact("step", Of::Nothing, "the number of the current step; 0 is the plan"),
@@ -128,7 +135,7 @@ const FACTS: &[Fact] = &[
     fact("shortfall", Of::Nothing, "how far below zero the sum of the step's negative cycle is"),
     fact(
         "bound",
-        Of::Nothing,
+        Of::Maybe("2nd visit"),
         "the bound on the first goal with the choices of the step, in a best-first search",
     ),
     fact("cycle", Of::Nothing, "the events of the negative cycle of the step, in order"),
@@ -167,6 +174,11 @@ const FACTS: &[Fact] = &[
     fact("true-mode", Of::Something("EngineA"), "the true mode of a component"),
     fact("believed", Of::Nothing, "how many states are believed possible"),
     fact("likelihood", Of::Nothing, "the probability of the most likely state, in percent to three decimals"),
+    fact(
+        "confidence",
+        Of::Something("EngineA"),
+        "the probability of the most likely mode of a component, in percent to three decimals",
+    ),
     fact("commands", Of::Nothing, "the commands of the next step"),
     fact("observed", Of::Something("EngineA.thrust"), "what was observed of a variable in the last step"),
     fact("conflicts", Of::Nothing, "how many sets of assumptions the last observation contradicts"),

@@ -53,6 +53,13 @@ pub enum StepTarget {
     },
 }
 
+impl StepTarget {
+    /// `12`, `end`, `first failure`, `2nd threat`, `last backtrack with D1`; what is wrong with it otherwise.
+    pub fn read(value: &str) -> Result<Self, String> {
+        step(value)
+    }
+}
+
 /// Which of several steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {

@@ -285,6 +285,47 @@ fn the_mission_of_every_lesson_comes_to_what_the_lesson_says() {
 }
 
 #[test]
+fn every_lesson_opens_with_what_its_reader_will_be_able_to_do() {
+    for (course, lesson) in lessons().skip(1) {
+        let first = lesson.stops[0].prose.first().map(markdown::Block::plain).unwrap_or_default();
+        let words = first.split_whitespace().count();
+        let is_sentence =
+            first.starts_with("You will ") && first.ends_with('.') && first.matches(". ").count() == 0;
+        assert!(is_sentence && words <= 25, "{}, {words} words: {first}", course.name);
+    }
+}
+
+#[test]
+fn what_lessons_say_of_their_missions_is_computed_and_follows_an_edit() {
+    let mut app = start();
+    let because = |app: &App, lesson: &str, stop: usize| {
+        let course = lessons().find(|(it, _)| it.name == lesson).expect("it is in the course").1;
+        let ask = course.stops[stop].ask.as_ref().expect("it asks something");
+        app.session.state().lesson_line(&ask.because)
+    };
+    let prose = |app: &App| at(app)["prose"].as_str().unwrap_or_default().to_owned();
+    open(&mut app, "choices", 1);
+    assert_eq!(because(&app, "choices", 1), "D2 was decided last, and has 2 alternatives left.");
+    let failures = because(&app, "choices", 2);
+    assert!(failures.starts_with("3 after the long way, and 1 more after the short way."), "{failures}");
+    open(&mut app, "order", 1);
+    assert!(
+        prose(&app)
+            .contains("Send consumes 6 at its start. The image produces 6 at its end, and the spectrum 4.")
+    );
+    let text = app.session.state().document.text().replacen("Memory 4", "Memory 3", 1);
+    app.session.set_source(&text);
+    app.settle();
+    assert!(prose(&app).contains("the spectrum 3."), "{}", prose(&app));
+    open(&mut app, "estimation", 1);
+    assert!(
+        prose(&app).contains("the first is 99.748%. Both engines work with probability 99.748% of 99.748%")
+    );
+    open(&mut app, "objectives", 3);
+    assert_eq!(because(&app, "objectives", 3), "It is 9. That of the other one is 10.");
+}
+
+#[test]
 fn next_and_previous_lead_through_the_course_and_back() {
     let mut app = start();
     // The tour is before the course.

@@ -1,6 +1,7 @@
 //! The text, its network, the plan, and why there is none.
 
 use exact::{Bound, Time};
+use rmpl::program::Change;
 use tpn::{Levels, Network, OccurrenceKind, Window};
 
 use super::{Row, count, measured, time, truth, words};
@@ -87,6 +88,8 @@ pub(super) const VALUES: &[Row] = &[
         let is = |it: Option<&tpn::Occurrence>, name: &str| it.is_some_and(|it| it.name == name.trim());
         truth(all.any(|[one, other]| is(one, first) && is(other, then)))
     }),
+    ("consumes", |it, name| amount(it, name, Change::Consumes)),
+    ("produces", |it, name| amount(it, name, Change::Produces)),
     ("least", |it, name| match levels(it, name)? {
         Levels::Range { low, .. } => Some(Value::Number(low)),
         Levels::Peak(_) => None,
@@ -150,6 +153,16 @@ fn levels(it: &Description<'_>, resource: &str) -> Option<Levels> {
     let (network, plan) = it.plan()?;
     let at = network.resources.iter().position(|it| it.name == resource)?;
     plan.levels.get(at).copied()
+}
+
+/// How much of the first resource that it changes so an occurrence takes or gives.
+fn amount(it: &Description<'_>, name: &str, change: Change) -> Option<Value> {
+    let network = it.network()?;
+    let is_meant = |it: &&tpn::Use| {
+        let owner = it.owner.and_then(|owner| network.occurrences.get(owner.index()));
+        it.change == change && owner.is_some_and(|owner| owner.name == name)
+    };
+    Some(Value::Number(network.uses.iter().find(is_meant)?.amount))
 }
 
 fn bound(bound: Bound) -> Option<Value> {

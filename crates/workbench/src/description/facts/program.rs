@@ -1,6 +1,7 @@
 //! The run of a control program: what is marked, what is believed, and what is true.
 
 use super::{Row, count, truth, words};
+use crate::lesson::Value;
 use crate::state::diagnosing::set_text;
 
 pub(super) const VALUES: &[Row] = &[
@@ -20,13 +21,12 @@ pub(super) const VALUES: &[Row] = &[
     }),
     ("true-mode", |it, name| words(it.plant()?.true_state.get(name)?.as_str())),
     ("believed", |it, _| count(it.plant()?.belief.len())),
-    ("likelihood", |it, _| {
-        let probability = it.plant_of_moment()?.1.belief.highest_probability();
-        if let Some(exact) = probability.exact() {
-            return words(format!("{:.3}%", percent(&exact.to_string())?));
-        }
-        let (low, high) = probability.percents(3);
-        words(format!("{low} to {high}%"))
+    ("likelihood", |it, _| in_percent(&it.plant_of_moment()?.1.belief.highest_probability())),
+    ("confidence", |it, name| {
+        let (model, plant) = it.plant_of_moment()?;
+        let component = model.component_named(name)?;
+        let mode = plant.belief.most_likely().mode(component);
+        in_percent(plant.belief.marginal(model, component).get(usize::from(mode))?)
     }),
     ("commands", |it, _| {
         let named = it.plant()?.next_commands.as_ref()?.iter();
@@ -53,6 +53,14 @@ pub(super) const VALUES: &[Row] = &[
         truth(it.diagnosing().is_some_and(|it| it.tree().is_finished()))
     }),
 ];
+
+fn in_percent(probability: &plant::Interval) -> Option<Value> {
+    if let Some(exact) = probability.exact() {
+        return words(format!("{:.3}%", percent(&exact.to_string())?));
+    }
+    let (low, high) = probability.percents(3);
+    words(format!("{low} to {high}%"))
+}
 
 /// An exact fraction in percent. Its parts may have more digits than an integer holds.
 fn percent(fraction: &str) -> Option<f64> {

@@ -1,9 +1,11 @@
 //! The recorded search and the step of it that is looked at.
 
 use kirk::Event;
+use tpn::Network;
 
 use super::{Row, count, time, truth, words};
 use crate::lesson::{StepKind, Value};
+use crate::state::search::Counts;
 use crate::state::search::wording::event;
 use crate::state::selection::node_name;
 
@@ -12,6 +14,18 @@ pub(super) const VALUES: &[Row] = &[
     ("states", |it, which| count(it.counts(which)?.states as usize)),
     ("backtracks", |it, which| count(it.counts(which)?.backtracks as usize)),
     ("failures", |it, which| count(it.counts(which)?.failures as usize)),
+    ("failures-before", |it, step| {
+        let (recording, step) = it.step_called(step)?;
+        count(Counts::until(recording.trace(), step).failures as usize)
+    }),
+    ("next-decision", |it, step| {
+        let (recording, step) = it.step_called(step)?;
+        let mut later = recording.trace().events.iter().skip(step + 1);
+        words(later.find_map(|entry| match &entry.event {
+            Event::Decide { decision, .. } => Some(Network::decision_name(*decision)),
+            _ => None,
+        })?)
+    }),
     ("propagations", |it, which| count(it.counts(which)?.propagations as usize)),
     ("count", |it, kind| {
         let (_, kind) = StepKind::ALL.into_iter().find(|(name, _)| *name == kind)?;
@@ -32,11 +46,16 @@ pub(super) const VALUES: &[Row] = &[
         let total = exact::Time::checked_sum(cycle.iter().map(|member| member.weight))?;
         time(total.checked_neg()?)
     }),
-    ("bound", |it, _| {
-        let (_, Event::Bound { values } | Event::Visit { values, .. }) = it.looked_at()? else {
-            return None;
+    ("bound", |it, step| {
+        let bound = |event: &Event| match event {
+            Event::Bound { values } | Event::Visit { values, .. } => values.first().copied(),
+            _ => None,
         };
-        values.first().copied().map(Value::Number)
+        if step.is_empty() {
+            return bound(it.looked_at()?.1).map(Value::Number);
+        }
+        let (recording, step) = it.step_called(step)?;
+        bound(&recording.trace().events.get(step)?.event).map(Value::Number)
     }),
     ("cycle", |it, _| {
         let (recording, event) = it.looked_at()?;
