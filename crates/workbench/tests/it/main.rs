@@ -21,3 +21,4 @@ mod path_race;
 mod session;
 mod transport;
 mod truth;
+mod wrong_attempts;

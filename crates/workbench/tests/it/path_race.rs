@@ -4,6 +4,7 @@ use nalgebra::Point2;
 use serde_json::{Value, json};
 use test_support::{App, start};
 use workbench::command::Command;
+use workbench::lesson::{Lesson, course_lesson};
 use workbench::state::growth::{GrowthCommand, Planners, Shown};
 use workbench::state::placing::NewThing;
 use workbench::state::terrain::TerrainCommand;
@@ -25,8 +26,12 @@ fn grow(app: &mut App, command: GrowthCommand) {
 }
 
 fn growing(planners: Planners) -> App {
+    growing_on(MISSION, planners)
+}
+
+fn growing_on(mission: &str, planners: Planners) -> App {
     let mut app = start();
-    app.run(Command::OpenSource { name: "gap".into(), source: MISSION.to_owned() });
+    app.run(Command::OpenSource { name: "gap".into(), source: mission.to_owned() });
     app.settle();
     grow(&mut app, GrowthCommand::Toggle);
     grow(&mut app, GrowthCommand::Choose(planners));
@@ -73,6 +78,20 @@ fn all_planners_race_and_each_is_counted() {
     grow(&mut app, GrowthCommand::Choose(Planners::One(motion::PlannerKind::Rrt)));
     grow(&mut app, GrowthCommand::GoTo(u32::MAX));
     assert_eq!(searches(&app), whole[..1]);
+}
+
+#[test]
+fn on_the_map_of_the_lesson_the_path_of_rrt_star_is_the_shortest_and_near_the_planned_one() {
+    let course = course_lesson("rrt").expect("a lesson");
+    let (lesson, _) = Lesson::read(course.name, course.text);
+    let app = growing_on(lesson.mission.source(), Planners::Race);
+    let found = searches(&app);
+    let length = |at: usize| found[at]["length"].as_f64().expect("it found a path");
+    for other in [0, 1, 3] {
+        assert!(length(2) < length(other), "RRT* shortens its path: {found:?}");
+    }
+    let planned = app.session.state().shown().expect("a plan").traverses[0].length_m;
+    assert!((0.99..1.05).contains(&(length(2) / planned)), "{} m, planned {planned} m", length(2));
 }
 
 #[test]
