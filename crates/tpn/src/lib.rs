@@ -22,7 +22,8 @@ pub mod vocabulary;
 pub mod worth;
 
 pub use compile::{
-    Assumption, Ground, Level, Top, assumed, assumptions, compile, compile_on, compile_scenarios, merge_diagnostics,
+    Assumption, Ground, Level, Top, assumed, assumptions, compile, compile_on, compile_scenarios,
+    merge_diagnostics,
 };
 pub use network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
