@@ -618,6 +618,8 @@ export type HistoryEntry = {
   problem: string | null;
   /** Whether it counts. */
   counts: boolean;
+  /** Why it has no effect although it counts: it weakens the board, which has not agreed. */
+  withoutEffect: string | null;
 };
 
 /** An item that may be as it is until some day. */

@@ -203,6 +203,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
     let rows = record.checked().enumerate().map(|(index, (entry, check))| {
         let of = entry.act.of().map(|of| format!(" entry {}", record.number(of))).unwrap_or_default();
         let look = match check.signature {
+            _ if record.without_effect(entry).is_some() => "attention",
             _ if check.counts() => "passed",
             Signature::Broken => "failed",
             Signature::Valid | Signature::Unknown | Signature::Unsigned => "attention",
@@ -221,7 +222,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
             format!("{}{of}", entry.act.name()),
             words(entry),
             state,
-            word(look, &shown(&check.words())),
+            word(look, &shown(&record.words_of(entry, check))),
             format!("<code>{}</code>", shown(short(&entry.content_hash))),
             format!("<code>{}</code>", shown(short(entry.digest()))),
         ]

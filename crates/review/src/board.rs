@@ -69,11 +69,12 @@ impl<'a> Present<'a> {
 
     /// What is another than in `approval` of `record`, which approved `subject`; nothing if it counts.
     pub fn difference(&self, record: &Record, approval: &Entry, subject: &Subject) -> Option<&'static str> {
-        self.difference_by(&Accepted::new(record, &record.waivers()), approval, subject)
+        self.difference_by(record, &Accepted::new(record, &record.waivers()), approval, subject)
     }
 
     fn difference_by(
         &self,
+        record: &Record,
         accepted: &Accepted<'_>,
         approval: &Entry,
         subject: &Subject,
@@ -83,7 +84,10 @@ impl<'a> Present<'a> {
                 Some("the text, map, goal or seed has changed")
             }
             Some(plan_hash) if approval.plan_hash != plan_hash => Some("the plan has changed"),
-            _ if subject.rules != *self.rules => Some("the flight rules have changed"),
+            _ if subject.rules != *self.rules || subject.rules != *record.rules() => {
+                Some("the flight rules have changed")
+            }
+            _ if !record.is_under_rules(approval) => Some("the flight rules were changed and set again"),
             _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments have changed"),
             _ => None,
         }
@@ -176,7 +180,7 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     let accepted = Accepted::new(record, &waivers);
     let current = approvals
         .iter()
-        .filter(|(entry, subject)| present.difference_by(&accepted, entry, subject).is_none());
+        .filter(|(entry, subject)| present.difference_by(record, &accepted, entry, subject).is_none());
     let seats = seats(&present.rules.board, &current.map(|(entry, _)| *entry).collect::<Vec<_>>());
     let open_comments = open_comments(record);
     let (mut unacknowledged, mut relied_on) = (Vec::new(), BTreeSet::new());
@@ -187,7 +191,7 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         }
     }
     let failed = present.review.map_or(0, |review| review.count(Status::Failed));
-    let lapsed = lapsed(&approvals, &accepted, present);
+    let lapsed = lapsed(record, &approvals, &accepted, present);
     let is_blocked = !open_comments.is_empty() || !unacknowledged.is_empty() || failed > 0;
     let is_complete = is_complete(&seats);
     let mut given = seats.iter().flat_map(|seat| &seat.given);
@@ -247,12 +251,13 @@ fn is_complete(seats: &[Approvals<'_>]) -> bool {
 
 /// The latest approval that completed a board, of something else than the present.
 fn lapsed<'a>(
+    record: &Record,
     approvals: &[(&'a Entry, &'a Subject)],
     accepted: &Accepted<'_>,
     present: &Present<'_>,
 ) -> Option<(&'a Entry, &'static str)> {
     approvals.iter().rev().find_map(|(last, subject)| {
-        let difference = present.difference_by(accepted, last, subject)?;
+        let difference = present.difference_by(record, accepted, last, subject)?;
         let same = approvals.iter().filter(|(entry, other)| {
             entry.content_hash == last.content_hash
                 && entry.plan_hash == last.plan_hash

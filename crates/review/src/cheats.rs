@@ -34,7 +34,8 @@ impl Board {
         let rules = FlightRules { board: vec![seat], ..FlightRules::default() };
         let mut review = reviewed(source);
         review.judge(&rules, None);
-        let record = judged(Record::new(mission));
+        let mut record = judged(Record::new(mission));
+        record.seed(super::hash::sha256(source.as_bytes()).as_bytes()[..32].try_into().expect("32 bytes"));
         let mut board = Self { review, source: source.to_owned(), record, minute: 0 };
         board.say("Chair", Act::Rules { rules });
         board
@@ -48,6 +49,29 @@ impl Board {
             time: format!("2026-01-01T00:{:02}:00Z", self.minute),
             content_hash: self.review.content_hash.clone(),
             plan_hash: self.review.plan_hash.clone(),
+        }
+    }
+
+    /// What someone says who comes after no one, without an act of its own.
+    fn said(&mut self, by: &str) -> Said {
+        let Who { by, role, time, content_hash, plan_hash } = self.who(by);
+        let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
+        let (mission, history) = ("enroute".to_owned(), self.record.history().to_owned());
+        let (nonce, rules, acknowledged, former) = (String::new(), String::new(), Vec::new(), Vec::new());
+        Said {
+            by,
+            mission,
+            history,
+            nonce,
+            key: None,
+            role,
+            time,
+            content_hash,
+            plan_hash,
+            rules,
+            acknowledged,
+            former,
+            act,
         }
     }
 
@@ -81,6 +105,13 @@ impl Board {
         let mut review = self.review.clone();
         review.judge(record.rules(), None);
         standing(record, &Present::of_review(&review)).status
+    }
+
+    /// The status for someone who holds the plan against other flight rules.
+    fn status_under(&self, rules: &FlightRules) -> PlanStatus {
+        let mut review = self.review.clone();
+        review.judge(rules, None);
+        standing(&self.record, &Present::of_review(&review)).status
     }
 
     fn seats(&self) -> String {
@@ -172,7 +203,8 @@ fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
     // An outsider asks for less: no one heeds it.
     board.say_with("Eve", Act::Rules { rules: one.clone() }, &key("Eve"));
     assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Approved));
-    for changed in [one, flat] {
+    let three = FlightRules { board: vec![Seat::new("Reviewer", 3)], ..rules.clone() };
+    for changed in [flat, three] {
         board.say("Chair", Act::Rules { rules: changed.clone() });
         assert_eq!(board.record.rules(), &changed);
         assert_eq!(board.status_of(&board.record), PlanStatus::Lapsed);
@@ -184,19 +216,10 @@ fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
         rules: FlightRules::default().digest(),
         former: board.record.heads().map(str::to_owned).collect(),
         act: Act::Approve { subject: board.record.keep_subject(subject), text: String::new() },
-        ..said(board.who("Ada"))
+        ..board.said("Ada")
     };
     let forged = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
     assert!(last_check(&forged).1.contains("other flight rules"), "{:?}", last_check(&forged));
-}
-
-/// What someone says, without an act of its own.
-fn said(who: Who) -> Said {
-    let Who { by, role, time, content_hash, plan_hash } = who;
-    let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
-    let (mission, rules) = ("enroute".to_owned(), String::new());
-    let (acknowledged, former) = (Vec::new(), Vec::new());
-    Said { by, mission, key: None, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
 }
 
 /// A record to which someone has written an entry by other means than this program.
@@ -204,7 +227,8 @@ fn with_entry(record: &Record, entry: &Entry) -> Record {
     let mut document: Value = serde_json::from_str(&record.to_json()).expect("JSON");
     let written = json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() });
     document["entries"].as_array_mut().expect("a list").push(written);
-    document["heads"] = json!([entry.digest()]);
+    let heads = record.heads().filter(|head| !entry.former.iter().any(|former| former == head));
+    document["heads"] = heads.chain([entry.digest()]).collect();
     judged(Record::from_json(&document.to_string()).expect("it is whole"))
 }
 
@@ -213,7 +237,9 @@ fn nobody_approves_in_the_role_of_somebody_else() {
     let mut board = Board::new(LASTING);
     let safety = Seat { people: vec![key("Grace").public()], ..Seat::new("Safety", 1) };
     let board_of = |seat: Seat| FlightRules { board: vec![seat], ..FlightRules::default() };
-    board.say("Chair", Act::Rules { rules: board_of(safety.clone()) });
+    for by in ["Chair", "Ada"] {
+        board.say(by, Act::Rules { rules: board_of(safety.clone()) });
+    }
     board.review.judge(board.record.rules(), None);
     let may = |board: &Board, by: &str| {
         standing(&board.record, &Present::of_review(&board.review)).may_approve(&key(by).public(), "Safety")
@@ -293,6 +319,8 @@ fn forge(board: &Board, change: impl Fn(usize, &mut Value)) -> Record {
             }
             let last = entries.last().expect("an entry")["digest"].clone();
             document["heads"] = json!([last]);
+            let new = renamed.iter().find(|(from, _)| document["history"] == json!(from));
+            document["history"] = json!(new.expect("the first entry").1);
         })
         .expect("it is whole")
 }
@@ -411,7 +439,7 @@ fn impossible_dates_and_missing_signatures_are_marked() {
         let said = Said {
             time: time.to_owned(),
             former: board.record.heads().map(str::to_owned).collect(),
-            ..said(board.who("Ada"))
+            ..board.said("Ada")
         };
         let read = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
         let (signature, problem) = last_check(&read);
@@ -511,7 +539,10 @@ fn acknowledgments_and_rules_of_another_mission_count_for_nothing() {
         board: vec![Seat::new("Reviewer", 1)],
         ..theirs.record.rules().clone()
     };
-    theirs.say("Chair", Act::Rules { rules: lax });
+    for by in ["Chair", "Ada"] {
+        theirs.say(by, Act::Rules { rules: lax.clone() });
+    }
+    assert_eq!(theirs.record.rules(), &lax);
     for line in unacknowledged(&theirs) {
         theirs.say("Ada", Act::Acknowledge { line, text: "As meant there.".to_owned() });
     }
@@ -552,7 +583,7 @@ fn an_entry_from_the_future_keeps_nobody_from_taking_an_approval_back() {
         let said = Said {
             time: "2026-03-01T00:00:00Z".to_owned(),
             former: board.record.heads().map(str::to_owned).collect(),
-            ..said(board.who(by))
+            ..board.said(by)
         };
         board.record = with_entry(&board.record, &Entry::signed(said, &secret));
         assert!(last_check(&board.record).1.contains("in the future"), "{:?}", last_check(&board.record));
@@ -724,10 +755,280 @@ fn rules_that_change_between_two_approvals_leave_one_approval() {
     board.review.judge(&flat, None);
     board.approve("Grace");
     assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
-    // With the former rules, the approval of the others does not count.
+    // With the former rules again, neither counts: the rules have changed since each of them.
     board.say("Chair", Act::Rules { rules: rules.clone() });
     board.review.judge(&rules, None);
-    assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
+    assert_eq!((board.seats(), board.status()), ("Reviewer 0 of 2".to_owned(), PlanStatus::InReview));
+}
+
+#[test]
+fn approvals_do_not_count_again_once_the_rules_went_away_and_came_back() {
+    let mut board = approved();
+    let rules = board.record.rules().clone();
+    let three = FlightRules { board: vec![Seat::new("Reviewer", 3)], ..rules.clone() };
+    board.say("Chair", Act::Rules { rules: three.clone() });
+    assert_eq!((board.status(), board.record.rules()), (PlanStatus::Lapsed, &three));
+    // One person does not reset them, and neither do two of three.
+    for by in ["Ada", "Ada", "Grace"] {
+        board.say(by, Act::Rules { rules: rules.clone() });
+        assert_eq!((board.status(), board.record.rules()), (PlanStatus::Lapsed, &three), "{by}");
+    }
+    board.say("Chair", Act::Rules { rules: rules.clone() });
+    assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Lapsed));
+    let standing = standing(&board.record, &Present::of_review(&board.review));
+    let why = standing.lapsed.map(|(_, why)| why);
+    assert_eq!(why, Some("the flight rules were changed and set again"));
+    board.approve("Ada");
+    assert_eq!(board.status(), PlanStatus::InReview);
+    board.approve("Grace");
+    assert_eq!(board.status(), PlanStatus::Approved);
+}
+
+#[test]
+fn nobody_weakens_the_board_alone() {
+    let safety = Seat { people: vec![key("Grace").public()], ..Seat::new("Safety", 1) };
+    let two = || Seat::new("Reviewer", 2);
+    for (before, after, others) in [
+        // Fewer approvals, a role that no longer names people, a role less, another role.
+        (vec![two()], vec![Seat::new("Reviewer", 1)], &["Grace"][..]),
+        (vec![safety.clone()], vec![Seat::new("Safety", 1)], &["Grace"]),
+        (vec![two(), safety.clone()], vec![two()], &["Chair", "Grace"]),
+        (vec![safety], vec![Seat::new("Press", 1)], &["Grace"]),
+    ] {
+        let mut board = Board::new(LASTING);
+        let of = |seats: &[Seat]| FlightRules { board: seats.to_vec(), ..FlightRules::default() };
+        for by in ["Chair", "Grace"] {
+            board.say(by, Act::Rules { rules: of(&before) });
+        }
+        assert_eq!(board.record.rules().board, before);
+        let role = after[0].role.clone();
+        let asked = board.say("Ada", Act::Rules { rules: of(&after) });
+        assert_eq!(board.record.rules().board, before, "{after:?}");
+        let mut review = board.review.clone();
+        review.judge(&of(&after), None);
+        let subject = Subject::new(&review, &board.source, Goal::Default, 0, Value::Null, None);
+        let who = Who { role, ..board.who("Ada") };
+        board.record.approve(who, subject, String::new(), Vec::new(), &key("Ada"));
+        assert!(!board.status().is_approved(), "{after:?}");
+        assert!(!board.status_under(&of(&after)).is_approved(), "{after:?}");
+        // It is told what the change waits for, and the rest of the board agrees.
+        let entry = board.record.entry(&asked).expect("it is there");
+        let note = board.record.without_effect(entry).expect("it has none");
+        assert!(note.contains("of the board in force"), "{note}");
+        for (index, by) in others.iter().enumerate() {
+            assert_eq!(board.record.proposals().len(), 1);
+            assert_eq!(board.record.proposals()[0].by.len(), index + 1);
+            board.say(by, Act::Rules { rules: of(&after) });
+        }
+        assert_eq!((&board.record.rules().board, board.record.proposals().len()), (&after, 0));
+        let names: Vec<&str> = board.record.board_by().iter().map(|entry| entry.by.as_str()).collect();
+        assert_eq!((names[0], names.len()), ("Ada", others.len() + 1));
+        assert!(!board.status().is_approved(), "Ada approved before the board agreed");
+    }
+}
+
+#[test]
+fn who_agreed_to_leave_other_rules_did_not_agree_to_leave_these() {
+    let mut board = Board::new(LASTING);
+    let rules = board.record.rules().clone();
+    let of = |count: u32| FlightRules { board: vec![Seat::new("Reviewer", count)], ..rules.clone() };
+    board.say("Grace", Act::Rules { rules: of(1) });
+    board.say("Chair", Act::Rules { rules: of(3) });
+    let grace = board.record.entries()[1].clone();
+    assert_eq!(
+        board.record.without_effect(&grace).as_deref(),
+        Some("weakened the board, which did not agree")
+    );
+    for by in ["Ada", "Chair"] {
+        board.say(by, Act::Rules { rules: of(1) });
+    }
+    assert_eq!(board.record.rules(), &of(3), "two of three, and Grace agreed to leave two approvals");
+    // An entry that was made apart, and names the former rules, agrees to nothing either.
+    let said = Said { rules: of(2).digest(), act: Act::Rules { rules: of(1) }, ..board.said("Grace") };
+    let said = Said { former: board.record.heads().map(str::to_owned).collect(), ..said };
+    let apart = with_entry(&board.record, &Entry::signed(said, &key("Grace")));
+    assert_eq!(apart.rules(), &of(3));
+    board.say("Grace", Act::Rules { rules: of(1) });
+    assert_eq!(board.record.rules(), &of(1));
+}
+
+/// Another history of the same mission, in which the Chair sets these rules.
+fn elsewhere(rules: &FlightRules) -> Board {
+    let mut board = Board::new(LASTING);
+    board.record = judged(Record::new("enroute"));
+    board.record.seed([9; 32]);
+    board.say("Chair", Act::Rules { rules: rules.clone() });
+    board
+}
+
+/// The document of a record with more entries at its end, whatever they follow.
+fn spliced(record: &Record, entries: &[&Entry]) -> Value {
+    let mut document: Value = serde_json::from_str(&record.to_json()).expect("JSON");
+    let written = document["entries"].as_array_mut().expect("a list");
+    let mut heads: Vec<String> = record.heads().map(str::to_owned).collect();
+    for entry in entries {
+        written
+            .push(json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() }));
+        heads.retain(|head| !entry.former.contains(head));
+        heads.push(entry.digest().to_owned());
+    }
+    heads.sort();
+    document["heads"] = json!(heads);
+    document
+}
+
+fn read(document: &Value) -> Record {
+    judged(Record::from_json(&document.to_string()).expect("it is whole"))
+}
+
+fn problems(record: &Record) -> Vec<String> {
+    record.checked().map(|(_, check)| check.problem.clone().unwrap_or_default()).collect()
+}
+
+#[test]
+fn rules_of_another_history_of_the_same_mission_count_for_nothing() {
+    let mut board = Board::new(LASTING);
+    let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..board.record.rules().clone() };
+    let theirs = elsewhere(&one);
+    assert_eq!(theirs.record.rules(), &one);
+    let [spliced_in] = theirs.record.entries() else { panic!("one entry") };
+    // Ada joins the two, and approves under the rules that were spliced in.
+    let mut review = board.review.clone();
+    review.judge(&one, None);
+    let subject = Subject::new(&review, &board.source, Goal::Default, 0, Value::Null, None);
+    let subject = board.record.keep_subject(subject);
+    let histories = [board.record.history().to_owned(), theirs.record.history().to_owned()];
+    let mut approval = |history: &str| {
+        let former = board.record.heads().map(str::to_owned).chain([spliced_in.digest().to_owned()]);
+        let said = Said {
+            history: history.to_owned(),
+            rules: one.digest(),
+            former: former.collect(),
+            act: Act::Approve { subject: subject.clone(), text: String::new() },
+            ..board.said("Ada")
+        };
+        Entry::signed(said, &key("Ada"))
+    };
+    let approvals = histories.each_ref().map(|history| approval(history));
+    for approval in &approvals {
+        let mut document = spliced(&board.record, &[spliced_in, approval]);
+        let joined = read(&document);
+        assert!(!board.status_of(&joined).is_approved(), "{:?}", problems(&joined));
+        let (_, check) = joined.checked().find(|(entry, _)| *entry == spliced_in).expect("it is there");
+        assert!(check.problem.as_deref().is_some_and(|why| why.contains("follows no entry")), "{check:?}");
+        assert_eq!(joined.rules(), board.record.rules());
+        // The file says that it is the other history: the Chair's first board is not in that one, as its reader sees.
+        document["history"] = json!(theirs.record.history());
+        let other = read(&document);
+        assert_eq!(other.history(), theirs.record.history());
+        let chairs = other.check_of(board.record.history()).expect("it is there");
+        assert!(chairs.problem.as_deref().is_some_and(|why| why.contains("follows no entry")), "{chairs:?}");
+        document["history"] = json!("");
+        let none = read(&document);
+        assert_eq!(none.counted().count(), 0, "{:?}", problems(&none));
+        document["history"] = json!("0".repeat(64));
+        let missing = Record::from_json(&document.to_string());
+        assert!(matches!(missing, Err(RecordError::Broken(why)) if why.contains("first entry")));
+    }
+    // Merged, the entries of the other history are there and do not count.
+    assert!(!board.record.is_same_history(&theirs.record) && !board.record.can_join(&theirs.record));
+    board.record.merge(theirs.record.clone());
+    assert_eq!((board.record.counted().count(), board.record.rules().board[0].approvals), (1, 2));
+    // Who has nothing that counts takes the other history over.
+    let mut stranger = Record::new("enroute");
+    stranger.seed([3; 32]);
+    stranger.add(board.who("Eve"), Act::Comment { about: None, to: None, text: "Hm.".into() }, &key("Eve"));
+    let mut stranger = judged(stranger);
+    assert!(stranger.can_join(&theirs.record));
+    stranger.merge(theirs.record.clone());
+    assert_eq!((stranger.history(), stranger.rules()), (theirs.record.history(), &one));
+}
+
+#[test]
+fn a_history_has_one_first_entry() {
+    let mut board = Board::new(LASTING);
+    let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..board.record.rules().clone() };
+    for time in ["1999-01-01T00:00:00Z", "2026-01-01T00:30:00Z"] {
+        let said =
+            Said { time: time.to_owned(), act: Act::Rules { rules: one.clone() }, ..board.said("Ada") };
+        let second = Entry::signed(said, &key("Ada"));
+        let after = Said { former: vec![second.digest().to_owned()], ..board.said("Ada") };
+        let after = Entry::signed(after, &key("Ada"));
+        let read = read(&spliced(&board.record, &[&second, &after]));
+        let problem = |entry: &Entry| read.check_of(entry.digest()).and_then(|check| check.problem.clone());
+        assert!(problem(&second).is_some_and(|why| why.contains("follows no entry")), "{time}");
+        assert!(problem(&after).is_some_and(|why| why.contains("does not follow the first")), "{time}");
+        assert_eq!((read.rules(), read.counted().count()), (board.record.rules(), 1));
+    }
+    // The history is signed in each entry.
+    board.approve("Ada");
+    let [first, second] = board.record.entries() else { panic!("two entries") };
+    assert_eq!((first.nonce.len(), first.history.as_str()), (64, ""));
+    assert_eq!((second.nonce.as_str(), second.history.as_str()), ("", first.digest()));
+    // Another history of the same words at the same time has another first entry.
+    let other = elsewhere(board.record.rules());
+    assert_ne!(other.record.history(), board.record.history());
+}
+
+#[test]
+fn a_history_without_an_id_is_one_only_if_it_has_one_first_entry() {
+    let unnamed = |minute: u32| {
+        let mut board = Board::new(LASTING);
+        (board.record, board.minute) = (judged(Record::new("enroute")), minute);
+        let rules = FlightRules { board: vec![Seat::new("Reviewer", 2)], ..FlightRules::default() };
+        board.say("Chair", Act::Rules { rules });
+        board
+    };
+    let mut board = unnamed(0);
+    board.approve("Ada");
+    board.approve("Grace");
+    let mut read = read(&serde_json::from_str(&board.record.to_json()).expect("JSON"));
+    assert_eq!((read.history(), board.status_of(&read)), ("", PlanStatus::Approved));
+    // It goes on without an id, also where it is prepared for one.
+    read.seed([5; 32]);
+    read.add(board.who("Ada"), Act::Comment { about: None, to: None, text: "Fine.".into() }, &key("Ada"));
+    assert_eq!(read.counted().count(), 4);
+    let other = unnamed(30);
+    assert!(!board.record.is_same_history(&other.record));
+    // A start of someone whom no one trusts spoils nothing.
+    let forged =
+        Entry::signed(Said { time: "1999-01-01T00:00:00Z".into(), ..board.said("Eve") }, &key("Eve"));
+    assert_eq!(board.status_of(&with_entry(&board.record, &forged)), PlanStatus::Approved);
+    board.record.merge(other.record);
+    assert_eq!((board.record.counted().count(), board.status()), (0, PlanStatus::Draft));
+    assert!(problems(&board.record).iter().all(|why| why.contains("several histories without an id")));
+}
+
+#[test]
+fn an_entry_does_not_precede_the_rules_that_it_signs() {
+    let mut board = Board::new(LASTING);
+    board.record = judged(Record::new("enroute"));
+    board.record.seed([4; 32]);
+    let first = board.say("Grace", Act::Comment { about: None, to: None, text: "Hm.".into() });
+    let said = board.said("Ada");
+    board.say("Chair", Act::Rules { rules: board.review.rules.clone() });
+    let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
+    let act = Act::Approve { subject: board.record.keep_subject(subject), text: String::new() };
+    let rules = board.record.rules().digest();
+    let said = Said { former: vec![first], rules, act, ..said };
+    let early = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+    let (_, check) = early.checked().nth(1).expect("the approval");
+    assert_eq!(check.problem.as_deref(), Some("it comes before the flight rules that it signs"));
+}
+
+#[test]
+fn an_approval_that_comes_before_its_rules_does_not_count() {
+    let mut board = Board::new(LASTING);
+    let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
+    let rules = board.record.rules().digest();
+    let subject = board.record.keep_subject(subject);
+    let act = Act::Approve { subject, text: String::new() };
+    let time = "1999-01-01T00:00:00Z".to_owned();
+    let said = Said { time, rules, act, ..board.said("Ada") };
+    let early = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+    let (_, check) = early.checked().next().expect("the approval");
+    assert!(check.problem.is_some(), "{check:?}");
+    assert_eq!(board.status_of(&early), PlanStatus::Draft);
 }
 
 #[test]

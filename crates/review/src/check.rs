@@ -77,6 +77,7 @@ pub(super) fn check(record: &Record, entry: &Entry, trust: &Trust, now: Option<T
     };
     let problem = problem_of_name(entry, known, trust)
         .or_else(|| problem_of_mission(record, entry))
+        .or_else(|| problem_of_history(record, entry))
         .or_else(|| problem_of_time(record, entry, now))
         .or_else(|| problem_of_act(record, entry));
     Check { signature, problem }
@@ -103,6 +104,25 @@ fn problem_of_mission(record: &Record, entry: &Entry) -> Option<String> {
     })
 }
 
+fn problem_of_history(record: &Record, entry: &Entry) -> Option<String> {
+    let problem = match record.history() {
+        _ if entry.key.is_none() => return None,
+        "" if !entry.history.is_empty() || !entry.nonce.is_empty() => {
+            "it belongs to another history of this mission"
+        }
+        "" if record.has_several_starts() => {
+            "several histories without an id are joined here, and nothing shows which entries belong together"
+        }
+        "" => return None,
+        first if entry.digest() == first => return None,
+        _ if entry.former.is_empty() => "it follows no entry, as only the first entry of a history may",
+        first if entry.history != first => "it belongs to another history of this mission",
+        _ if !record.is_after_first(entry) => "it does not follow the first entry of this history",
+        _ => return None,
+    };
+    Some(problem.to_owned())
+}
+
 fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Option<String> {
     let Some(time) = moment(&entry.time) else { return Some("its date is malformed".to_owned()) };
     let mut former = entry.former.iter().filter_map(|former| record.entry(former));
@@ -119,6 +139,9 @@ fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
         return Some(objection.words(&entry.act).to_owned());
     }
     match &entry.act {
+        _ if record.precedes_its_rules(entry) => {
+            Some("it comes before the flight rules that it signs".to_owned())
+        }
         Act::Approve { .. }
             if record.subject(entry).is_none_or(|subject| subject.rules.digest() != entry.rules) =>
         {

@@ -84,6 +84,13 @@ pub struct Said {
     /// The mission in whose history it is; empty in histories of earlier versions.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub mission: String,
+    /// The history that it continues: the digest of its first entry. Empty in the first entry, and in histories of earlier
+    /// versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub history: String,
+    /// In the first entry of a history: a random number in hexadecimal, so that no two histories have the same first entry.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub nonce: String,
     /// Whose signature it has; none in histories of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key: Option<PublicKey>,

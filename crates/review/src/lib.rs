@@ -26,6 +26,7 @@ mod place;
 mod plan_lines;
 pub mod record;
 pub mod rules;
+pub mod ruling;
 pub mod schedule;
 pub mod sealed;
 pub mod seat;

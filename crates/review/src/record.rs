@@ -8,12 +8,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use data_encoding::HEXLOWER;
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 
 use super::check::{Check, HIDDEN, check, is_after, moment};
 pub use super::entry::{Act, Entry, LineKey, Rate, Runs, Said, SeenLine, Subject, Who, seen_lines};
 use super::keys::{SecretKey, Trust};
+use super::ruling::{Ruling, followers};
 use super::sealed::Sealed;
 use super::{FlightRules, former_record};
 
@@ -22,10 +24,23 @@ use super::{FlightRules, former_record};
 pub struct Record {
     /// The name of the mission whose history this is. Every entry signs it, so it stays when the mission gets another name.
     pub mission: String,
+    /// Which history it is: the digest of its first entry, which every other entry signs. Empty in histories of earlier
+    /// versions, which have only the name of their mission.
+    history: String,
+    /// What makes the first entry another one than that of any other history, until there is one.
+    nonce: String,
+    /// Whether each entry is the first one, or was made after it.
+    follows: Vec<bool>,
+    /// How many entries follow no other, among those that trusted keys have signed for this mission.
+    starts: usize,
     /// Each entry after those that it was made after.
     entries: Vec<Entry>,
     /// What was found of each entry, for `trust` at `now`.
     checks: Vec<Check>,
+    /// Which flight rules are in force.
+    ruling: Ruling,
+    /// Where each set of flight rules was first set, by its digest.
+    first_rules: BTreeMap<String, usize>,
     /// Whose signatures count.
     trust: Trust,
     /// When the entries were checked.
@@ -88,7 +103,7 @@ pub fn is_record(document: &Value) -> bool {
 /// Two records are the same if they have the same content, whatever keys are trusted.
 impl PartialEq for Record {
     fn eq(&self, other: &Self) -> bool {
-        let parts = |it: &Self| (it.mission.clone(), it.heads.clone());
+        let parts = |it: &Self| (it.mission.clone(), it.history.clone(), it.heads.clone());
         parts(self) == parts(other)
             && self.entries == other.entries
             && self.subjects == other.subjects
@@ -100,6 +115,40 @@ impl Record {
     /// The record of a mission of which no one has said anything.
     pub fn new(mission: &str) -> Self {
         Self { mission: mission.to_owned(), ..Self::default() }
+    }
+
+    /// Prepares a new history: its first entry has this random number in it. Has no effect on a history that has entries.
+    pub fn seed(&mut self, random: [u8; 32]) {
+        self.nonce = HEXLOWER.encode(&random);
+    }
+
+    /// Which history it is: the digest of its first entry. Empty in histories of earlier versions.
+    pub fn history(&self) -> &str {
+        &self.history
+    }
+
+    /// Whether `other` is the same history, or one of the two is not a history yet. Those of earlier versions are the same
+    /// if they have a first entry in common.
+    pub fn is_same_history(&self, other: &Self) -> bool {
+        let starts = |it: &Self| {
+            let starts = it.entries.iter().filter(|entry| match it.history.as_str() {
+                "" => entry.former.is_empty(),
+                history => entry.digest() == history,
+            });
+            starts.map(|entry| entry.digest().to_owned()).collect::<BTreeSet<_>>()
+        };
+        let is_new = self.entries.is_empty() || other.entries.is_empty();
+        is_new || (self.history == other.history && !starts(self).is_disjoint(&starts(other)))
+    }
+
+    /// Whether an entry is the first one, or was made after it.
+    pub(super) fn is_after_first(&self, entry: &Entry) -> bool {
+        self.numbers.get(entry.digest()).is_some_and(|&index| self.follows.get(index) == Some(&true))
+    }
+
+    /// Whether trusted people started several histories of this mission, and they are joined here.
+    pub(super) fn has_several_starts(&self) -> bool {
+        self.starts > 1
     }
 
     /// Whether no one has said anything yet, and no runs are kept.
@@ -137,8 +186,32 @@ impl Record {
     }
 
     fn check_again(&mut self) {
+        let is_start = |entry: &&Entry| {
+            let is_trusted = entry.key.as_ref().is_some_and(|key| self.trust.name_of(key).is_some());
+            entry.former.is_empty() && entry.is_signed() && is_trusted && entry.mission == self.mission
+        };
+        self.starts = self.entries.iter().filter(is_start).count();
         let of = |entry| check(self, entry, &self.trust, self.now);
         self.checks = self.entries.iter().map(of).collect();
+        self.ruling = Ruling::new(&self.entries, &self.checks);
+    }
+
+    /// Which entries set the flight rules.
+    pub(super) fn ruling(&self) -> &Ruling {
+        &self.ruling
+    }
+
+    /// Whether an entry was made after the last change of the flight rules. Rules that were replaced and set again are
+    /// no longer those that an earlier approval is of.
+    pub fn is_under_rules(&self, entry: &Entry) -> bool {
+        self.numbers.get(entry.digest()).is_some_and(|&index| self.ruling.is_under(index))
+    }
+
+    /// Whether an entry comes before the flight rules that it names, wherever they are set.
+    pub(super) fn precedes_its_rules(&self, entry: &Entry) -> bool {
+        let first = self.first_rules.get(&entry.rules);
+        let index = self.numbers.get(entry.digest()).copied().unwrap_or(self.checks.len());
+        first.is_some_and(|&first| first > index) && entry.rules != USUAL_RULES.digest()
     }
 
     /// When the entries were checked.
@@ -198,17 +271,9 @@ impl Record {
         self.standing_entries().rev().find_map(|entry| Some((entry, self.subject(entry)?)))
     }
 
-    /// The flight rules: those that were set last, otherwise the usual ones.
+    /// The flight rules in force, otherwise the usual ones: see [`Record::ruled`].
     pub fn rules(&self) -> &FlightRules {
         self.ruled().map_or(&USUAL_RULES, |(_, rules)| rules)
-    }
-
-    /// The flight rules that were set last, with who set them.
-    pub fn ruled(&self) -> Option<(&Entry, &FlightRules)> {
-        self.counted().rev().find_map(|entry| match &entry.act {
-            Act::Rules { rules } => Some((entry, rules)),
-            _ => None,
-        })
     }
 
     /// Adds an entry after all others that are not dated later, signed. Returns its digest.
@@ -219,6 +284,9 @@ impl Record {
 
     fn insert(&mut self, entry: Entry) -> String {
         let digest = entry.digest().to_owned();
+        if self.entries.is_empty() && !entry.nonce.is_empty() {
+            self.history.clone_from(&digest);
+        }
         self.entries.push(entry);
         self.put_in_order();
         digest
@@ -233,7 +301,26 @@ impl Record {
         let Who { by, role, time, content_hash, plan_hash } = who;
         let former = self.last_before(&time);
         let (mission, key, rules, acknowledged) = (self.mission.clone(), None, String::new(), Vec::new());
-        Said { by, mission, key, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+        let (history, nonce) = if self.entries.is_empty() {
+            (String::new(), self.nonce.clone())
+        } else {
+            (self.history.clone(), String::new())
+        };
+        Said {
+            by,
+            mission,
+            history,
+            nonce,
+            key,
+            role,
+            time,
+            content_hash,
+            plan_hash,
+            rules,
+            acknowledged,
+            former,
+            act,
+        }
     }
 
     /// The last entries that an entry of this `time` can follow. Entries with a later date are passed over: an entry that
@@ -250,7 +337,10 @@ impl Record {
                 last.insert(digest.to_owned());
             }
         }
-        last.into_iter().collect()
+        // A second entry that follows no other would not count.
+        let first = self.entries.first().filter(|_| last.is_empty()).map(|entry| entry.digest().to_owned());
+        let first = first.map(|first| if self.history.is_empty() { first } else { self.history.clone() });
+        last.into_iter().chain(first).collect()
     }
 
     /// Adds an approval of `subject`, signed, and returns its digest; `acknowledged` are the digests of what it relies on: see
@@ -311,6 +401,7 @@ impl Record {
             "program": crate::PROGRAM,
             "diagnostics": [],
             "mission": self.mission,
+            "history": self.history,
             "entries": entries.collect::<Vec<Value>>(),
             "heads": self.heads,
             "subjects": subjects,
@@ -319,6 +410,26 @@ impl Record {
         let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
         text.push('\n');
         text
+    }
+
+    /// Takes over which history another record is, where this one has none of its own that counts.
+    fn take_history_of(&mut self, other: &Self) {
+        if self.entries.is_empty() || (self.counted().next().is_none() && other.counted().next().is_some()) {
+            self.history.clone_from(&other.history);
+        }
+    }
+
+    /// Whether the entries of `other` can be added without mixing two histories: they are the same, or nothing counts here.
+    pub fn can_join(&self, other: &Self) -> bool {
+        self.is_same_history(other) || (self.counted().next().is_none() && other.counted().next().is_some())
+    }
+
+    /// Agrees with another copy of the history that was kept first, where two tabs started one at the same time.
+    pub fn follow_history_of(&mut self, kept: &Self) {
+        if !kept.entries.is_empty() && self.history != kept.history {
+            self.history.clone_from(&kept.history);
+            self.put_in_order();
+        }
     }
 
     /// Reads the document, and checks that its history is whole. Whose signatures count is a matter of [`Record::judge`].
@@ -340,6 +451,7 @@ impl Record {
         }
         let mut record =
             Self { mission: value["mission"].as_str().unwrap_or_default().to_owned(), ..Self::default() };
+        value["history"].as_str().unwrap_or_default().clone_into(&mut record.history);
         let Value::Array(runs) = value["runs"].take() else { return Err(lacks("runs")) };
         for mut runs in runs {
             // Those that a version without digests kept cannot be told from others, and are made again.
@@ -384,7 +496,14 @@ impl Record {
             let signature = entry["signature"].as_str().unwrap_or_default().to_owned();
             record.entries.push(Entry::new(said, signature));
         }
+        if record.entries.is_empty() {
+            record.history.clear();
+        }
         record.put_in_order();
+        let has_first = record.history.is_empty() || record.entry(&record.history).is_some();
+        if !has_first {
+            return Err(RecordError::Broken("the first entry is missing".to_owned()));
+        }
         let heads: BTreeSet<String> = serde_json::from_value(value["heads"].take()).map_err(damaged)?;
         if heads != record.heads {
             return Err(RecordError::Broken("an entry at the end is missing".to_owned()));
@@ -415,6 +534,7 @@ impl Record {
     /// that it was made after; otherwise they are in order of time.
     pub fn merge(&mut self, other: Self) -> usize {
         let before = self.entries.len();
+        self.take_history_of(&other);
         self.subjects.extend(other.subjects);
         let mut new = Vec::new();
         for entry in other.entries {
@@ -438,13 +558,23 @@ impl Record {
     /// Puts the entries in the one order that they have, whatever order a document has them in: which flight rules were set
     /// last must not depend on that.
     fn put_in_order(&mut self) {
-        let entries = in_order(std::mem::take(&mut self.entries));
+        self.entries = in_order(std::mem::take(&mut self.entries));
         self.heads.clear();
         self.numbers.clear();
-        self.checks.clear();
-        for entry in entries {
-            self.push(entry);
+        self.first_rules.clear();
+        for (index, entry) in self.entries.iter().enumerate() {
+            for former in &entry.former {
+                self.heads.remove(former);
+            }
+            self.heads.insert(entry.digest().to_owned());
+            self.numbers.insert(entry.digest().to_owned(), index);
+            if let Act::Rules { rules } = &entry.act {
+                self.first_rules.entry(rules.digest()).or_insert(index);
+            }
         }
+        let first = self.numbers.get(&self.history);
+        self.follows = first.map_or_else(Vec::new, |&first| followers(&self.entries, first));
+        self.check_again();
     }
 }
 

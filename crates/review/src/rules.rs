@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use smol_str::SmolStr;
 
 use super::flight_rule::MissionRule;
@@ -106,17 +106,11 @@ impl FlightRules {
 
     /// Reads a document `{"format": "enroute-rules/1", …}`; what it does not name is as by default, and `null` is not a rule.
     pub fn from_json(text: &str) -> Result<Self, String> {
-        let mut value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        match value.as_object_mut().and_then(|members| members.remove("format")) {
-            Some(format) if format == RULES_FORMAT => {}
-            Some(format) => return Err(format!("its format is {format}, but must be \"{RULES_FORMAT}\"")),
-            None => {
-                return Err(format!(
-                    "this is not a flight rules file: \"format\" must be \"{RULES_FORMAT}\""
-                ));
-            }
-        }
-        let rules: Self = serde_json::from_value(value).map_err(|error| error.to_string())?;
+        Self::from_members(Value::Object(members(text)?))
+    }
+
+    fn from_members(members: Value) -> Result<Self, String> {
+        let rules: Self = serde_json::from_value(members).map_err(|error| error.to_string())?;
         rules.problem().map_or(Ok(rules), |problem| Err(problem.to_owned()))
     }
 
@@ -137,6 +131,16 @@ impl FlightRules {
     /// Where a rule comes from, for people.
     pub(super) fn source(is_default: impl Fn(&Self) -> bool) -> &'static str {
         if is_default(&Self::default()) { "flight rules, by default" } else { "flight rules of this mission" }
+    }
+
+    /// Who has to approve, in words: `2 Science, 1 Mobility (of ab12 cd34 ef56 7890)`.
+    pub fn board_in_words(&self) -> String {
+        let seats = self.board.iter().map(|seat| {
+            let people: Vec<String> = seat.people.iter().map(PublicKey::fingerprint).collect();
+            let of = if people.is_empty() { String::new() } else { format!(" (of {})", people.join(", ")) };
+            format!("{} {}{of}", seat.approvals, seat.role)
+        });
+        seats.collect::<Vec<_>>().join(", ")
     }
 
     /// Each rule in words.
@@ -183,13 +187,48 @@ impl FlightRules {
             let waivable = if rule.waivable { ", may be waived" } else { "" };
             format!("{}: {}{source}{waivable}", rule.name, rule.rule)
         }));
-        let seats = self.board.iter().map(|seat| {
-            let people: Vec<String> = seat.people.iter().map(PublicKey::fingerprint).collect();
-            let of = if people.is_empty() { String::new() } else { format!(" (of {})", people.join(", ")) };
-            format!("{} {}{of}", seat.approvals, seat.role)
-        });
-        words.push(format!("required approvals: {}", seats.collect::<Vec<_>>().join(", ")));
+        words.push(format!("required approvals: {}", self.board_in_words()));
         words
+    }
+}
+
+/// The members of a document of flight rules, without its format.
+fn members(text: &str) -> Result<Map<String, Value>, String> {
+    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let Value::Object(mut members) = value else {
+        return Err(format!("this is not a flight rules file: \"format\" must be \"{RULES_FORMAT}\""));
+    };
+    match members.remove("format") {
+        Some(format) if format == RULES_FORMAT => Ok(members),
+        Some(format) => Err(format!("its format is {format}, but must be \"{RULES_FORMAT}\"")),
+        None => Err(format!("this is not a flight rules file: \"format\" must be \"{RULES_FORMAT}\"")),
+    }
+}
+
+/// The flight rules that a history has to have: those that a document names.
+#[derive(Clone, Debug)]
+pub struct RequiredRules {
+    rules: FlightRules,
+    names: Vec<String>,
+}
+
+impl RequiredRules {
+    /// Reads a document as [`FlightRules::from_json`] does; what it does not name is not required.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        let members = members(text)?;
+        let names: Vec<String> = members.keys().cloned().collect();
+        if names.is_empty() {
+            return Err("it names no rules".to_owned());
+        }
+        Ok(Self { rules: FlightRules::from_members(Value::Object(members))?, names })
+    }
+
+    /// The names of the rules that are others than required: `board`, `slope_deg`.
+    pub fn differences(&self, rules: &FlightRules) -> Vec<&str> {
+        let of = |rules: &FlightRules| serde_json::to_value(rules).unwrap_or_default();
+        let (required, present) = (of(&self.rules), of(rules));
+        let names = self.names.iter().map(String::as_str);
+        names.filter(|&name| required[name] != present[name]).collect()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The board of a review: the roles that have to approve.
 
 use std::collections::BTreeSet;
+use std::iter;
 
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +47,54 @@ pub(super) fn default_board() -> Vec<Seat> {
     vec![Seat::new(DEFAULT_ROLE, 1)]
 }
 
+/// Whether a board is weaker than another one: a role is missing, needs fewer approvals, or admits more people.
+pub(super) fn weakens(before: &[Seat], after: &[Seat]) -> bool {
+    let keeps = |seat: &Seat| {
+        after.iter().any(|new| {
+            let admits_no_others = seat.people.is_empty()
+                || (!new.people.is_empty() && new.people.iter().all(|key| seat.admits(key)));
+            new.role == seat.role && new.approvals >= seat.approvals && admits_no_others
+        })
+    };
+    !before.iter().all(keeps)
+}
+
+/// How many approvals a board needs.
+pub(super) fn wanted(board: &[Seat]) -> usize {
+    board.iter().map(|seat| seat.approvals as usize).sum()
+}
+
+/// How many approvals of a board these people could give at most, each of them one.
+pub(super) fn filled(board: &[Seat], people: &BTreeSet<&PublicKey>) -> usize {
+    let places: Vec<&Seat> =
+        board.iter().flat_map(|seat| iter::repeat_n(seat, seat.approvals as usize)).collect();
+    let mut taken: Vec<Option<&PublicKey>> = vec![None; places.len()];
+    people.iter().filter(|key| seats_one(&places, &mut taken, &mut BTreeSet::new(), key)).count()
+}
+
+/// Finds a place for a person, perhaps by moving others (a maximum matching by augmenting paths).
+fn seats_one<'a>(
+    places: &[&Seat],
+    taken: &mut [Option<&'a PublicKey>],
+    seen: &mut BTreeSet<usize>,
+    key: &'a PublicKey,
+) -> bool {
+    for (place, seat) in places.iter().enumerate() {
+        if !seat.admits(key) || !seen.insert(place) {
+            continue;
+        }
+        let is_free = match taken[place] {
+            None => true,
+            Some(other) => seats_one(places, taken, seen, other),
+        };
+        if is_free {
+            taken[place] = Some(key);
+            return true;
+        }
+    }
+    false
+}
+
 /// What is wrong with a board, if something is.
 pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
     let are_alike = |(index, seat): (usize, &Seat)| {
@@ -74,4 +123,44 @@ pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
 fn has_too_few_people(seat: &Seat) -> bool {
     let people: BTreeSet<&PublicKey> = seat.people.iter().collect();
     people.len() < seat.people.len() || (1..seat.approvals as usize).contains(&people.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::record_tests::key;
+    use super::*;
+
+    fn named(role: &str, approvals: u32, people: &[&str]) -> Seat {
+        let people = people.iter().map(|name| key(name).public()).collect();
+        Seat { people, ..Seat::new(role, approvals) }
+    }
+
+    #[test]
+    fn a_board_is_weaker_if_a_role_is_missing_needs_less_or_admits_more() {
+        let before = [named("Science", 2, &[]), named("Safety", 1, &["Grace", "Ada"])];
+        let with = |science: Seat, safety: Seat| weakens(&before, &[science, safety]);
+        let (science, safety) = (before[0].clone(), before[1].clone());
+        assert!(!with(science.clone(), safety.clone()));
+        assert!(!weakens(&before, &[safety.clone(), named("Press", 1, &[]), science.clone()]));
+        assert!(!with(named("Science", 3, &["Ada", "Grace", "Eve"]), named("Safety", 1, &["Grace"])));
+        assert!(with(named("Science", 1, &[]), safety.clone()));
+        assert!(with(named("Press", 2, &[]), safety));
+        assert!(with(science.clone(), named("Safety", 1, &[])));
+        assert!(with(science, named("Safety", 1, &["Grace", "Eve"])));
+    }
+
+    #[test]
+    fn each_person_gives_one_approval_in_a_role_that_admits_that_person() {
+        let board = [named("Science", 2, &[]), named("Safety", 1, &["Grace"])];
+        let filled_by = |names: &[&str]| {
+            let keys: Vec<PublicKey> = names.iter().map(|name| key(name).public()).collect();
+            filled(&board, &keys.iter().collect())
+        };
+        assert_eq!(wanted(&board), 3);
+        assert_eq!(filled_by(&["Ada", "Chair", "Eve"]), 2);
+        // Whoever comes first, Grace is where no one else may be.
+        for names in [["Grace", "Ada", "Chair"], ["Ada", "Chair", "Grace"]] {
+            assert_eq!(filled_by(&names), 3, "{names:?}");
+        }
+    }
 }

@@ -279,7 +279,7 @@ impl Session {
                     host_io::change_keys(self.host.as_mut(), &mut self.state, change);
                 }
                 Effect::RecallKeys => host_io::recall_keys(self.host.as_ref(), &mut self.state),
-                Effect::RecallReview => host_io::recall_review(self.host.as_ref(), &mut self.state),
+                Effect::RecallReview => host_io::recall_review(self.host.as_mut(), &mut self.state),
                 Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
             }
         }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Subcommand;
 use review::names::one_line;
 use review::record::{Entry, RecordError, Runs, short};
+use review::rules::RequiredRules;
 use review::{Check, PlanStatus, Present, Record, Review, Standing, Waiver, WaiverState, review, standing};
 use serde_json::{Value, json};
 use snapshot::Goal;
@@ -45,9 +46,12 @@ struct Verify {
     scenario: Option<String>,
     #[command(flatten)]
     trusted: Trusted,
-    /// Digest of an entry that the history must contain.
+    /// Flight rules and board that must be in force, as far as this file gives them.
+    #[arg(long, value_name = "RULES.json")]
+    rules: Option<PathBuf>,
+    /// Digest of an entry that the history must contain; may be repeated.
     #[arg(long, value_name = "DIGEST")]
-    has: Option<String>,
+    has: Vec<String>,
     #[command(flatten)]
     options: PlanOptions,
 }
@@ -80,7 +84,8 @@ impl Verify {
             Err(other) => anyhow::bail!("cannot use {}: {other}", self.file.display()),
         };
         self.trusted.judge(&mut record)?;
-        if let Some(missing) = self.has.as_deref().filter(|digest| record.entry(digest).is_none()) {
+        let required = self.required_rules()?;
+        if let Some(missing) = self.has.iter().find(|digest| record.entry(digest).is_none()) {
             return self.refuse(&format!("the entry {missing} is missing"));
         }
         let review = self.review(&record)?;
@@ -102,12 +107,25 @@ impl Verify {
             };
             blockers.push(none.to_owned());
         }
+        let differences = required.iter().flat_map(|required| required.differences(record.rules()));
+        let differences: Vec<&str> = differences.collect();
+        if !differences.is_empty() {
+            blockers.push(format!("not the required flight rules: {}", differences.join(", ")));
+        }
         let found = Found { record: &record, standing, content_hash, blockers };
         match self.options.format {
             Format::Json => print_json(&document("review-check", &[], body(&found)))?,
             Format::Text => print_text(&words(&found))?,
         }
         Ok(exit(if found.is_approved() { YES } else { NO }))
+    }
+
+    /// The rules that have to be in force.
+    fn required_rules(&self) -> anyhow::Result<Option<RequiredRules>> {
+        let Some(path) = &self.rules else { return Ok(None) };
+        let rules = RequiredRules::from_json(&read_text(path)?);
+        let cannot = |reason: String| anyhow::anyhow!("cannot use {}: {reason}", path.display());
+        rules.map(Some).map_err(cannot)
     }
 
     /// The history is not whole.
@@ -152,6 +170,10 @@ fn words(found: &Found<'_>) -> String {
     let count = record.entries().len();
     let entries = if count == 1 { "entry" } else { "entries" };
     let mut out = format!("history intact: {count} {entries}\n");
+    out.push_str(&match record.history() {
+        "" => "history id: none\n".to_owned(),
+        history => format!("history id: {history}\n"),
+    });
     for (index, (entry, check)) in record.checked().enumerate() {
         out.push_str(&format!("{:>4}  {}\n", index + 1, told(record, entry, check)));
     }
@@ -161,6 +183,20 @@ fn words(found: &Found<'_>) -> String {
         standing.seats_in_words(),
         short(content_hash)
     ));
+    out.push_str(&format!("board: {}; {}\n", record.rules().board_in_words(), set_by(&record.board_by())));
+    out.push_str(&format!(
+        "flight rules: {}; {}\n",
+        short(&record.rules().digest()),
+        set_by(&record.rules_by())
+    ));
+    for proposal in record.proposals() {
+        out.push_str(&format!(
+            "proposed board: {}; {}; {}\n",
+            proposal.rules.board_in_words(),
+            set_by(&proposal.by),
+            proposal.consent()
+        ));
+    }
     if let (PlanStatus::Lapsed, Some((last, why))) = (standing.status, standing.lapsed) {
         out.push_str(&format!("{} approved {}: {why}\n", last.by, last.time));
     }
@@ -178,6 +214,15 @@ fn words(found: &Found<'_>) -> String {
     out
 }
 
+/// Who set rules, and when.
+fn set_by(entries: &[&Entry]) -> String {
+    if entries.is_empty() {
+        return "default, no one has set any".to_owned();
+    }
+    let by = entries.iter().map(|entry| format!("{} {}", entry.by, entry.time));
+    format!("set by {}", by.collect::<Vec<_>>().join(", "))
+}
+
 /// An entry in one line.
 fn told(record: &Record, entry: &Entry, check: &Check) -> String {
     let role = if entry.role.is_empty() { String::new() } else { format!(" ({})", entry.role) };
@@ -188,7 +233,7 @@ fn told(record: &Record, entry: &Entry, check: &Check) -> String {
     };
     let taken_back = record.withdrawn().get(entry.digest()).map(|by| format!(" [withdrawn by {}]", by.by));
     let taken_back = taken_back.unwrap_or_default();
-    let check = check.words();
+    let check = record.words_of(entry, check);
     format!("{}  {}{role} {}{of}{text}{taken_back} [{check}]", entry.time, entry.by, entry.act.name())
 }
 
@@ -202,6 +247,7 @@ fn body(found: &Found<'_>) -> Value {
             "signature": check.signature,
             "problem": check.problem,
             "counts": check.counts(),
+            "without_effect": record.without_effect(entry),
             "withdrawn_by": withdrawn.get(entry.digest()).map(|by| &by.by),
         })
     });
@@ -218,13 +264,34 @@ fn body(found: &Found<'_>) -> Value {
             "state": waiver.state,
         })
     });
+    let by = |entries: &[&Entry]| {
+        let by = |entry: &&Entry| json!({ "by": entry.by, "role": entry.role, "key": entry.key, "time": entry.time, "entry": entry.digest() });
+        entries.iter().map(by).collect::<Vec<Value>>()
+    };
+    let proposals = record.proposals().into_iter().map(|proposal| {
+        json!({
+            "rules": proposal.rules,
+            "by": by(&proposal.by),
+            "agreed": proposal.agreed,
+            "wanted": proposal.wanted,
+        })
+    });
+    let rules = json!({
+        "in_force": record.rules(),
+        "digest": record.rules().digest(),
+        "by": by(&record.rules_by()),
+        "board_by": by(&record.board_by()),
+        "proposed": proposals.collect::<Vec<Value>>(),
+    });
     json!({
         "intact": true,
         "approved": found.is_approved(),
         "mission": record.mission,
+        "history": record.history(),
         "plan_status": standing.status,
         "content_hash": content_hash,
         "board": seats.collect::<Vec<Value>>(),
+        "rules": rules,
         "open_comments": standing.open_comments.len(),
         "blockers": blockers,
         "waivers": waivers.collect::<Vec<Value>>(),

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 use std::process::Output;
 
 use review::keys::{KeyRing, Person, SecretKey};
+use review::record::{Act, Entry, LineKey, Record, Said, Subject, Who};
+use review::seat::Seat;
+use review::{FlightRules, Section};
 use serde_json::{Value, json};
 
 use crate::command::enroute;
@@ -165,8 +168,6 @@ fn ada(name: &str) -> (SecretKey, String) {
 /// The history of a board that approved the mission, as a file, with the keys of the board; what was approved is taken
 /// from a report.
 fn approved_history(name: &str) -> (String, String, String) {
-    use review::record::{Act, LineKey, Record, Subject, Who};
-    use review::{FlightRules, Section};
     let output = enroute(&["report", SMALL, "--format", "json"]);
     let report: Value = serde_json::from_str(&written(&output)).expect("JSON");
     let text = |member: &str| report[member].as_str().expect("a text").to_owned();
@@ -180,30 +181,42 @@ fn approved_history(name: &str) -> (String, String, String) {
     let (secret, keys) = ada(&format!("{name}.keys.json"));
     let mut record = Record::new("small");
     let ring = KeyRing::from_json(&std::fs::read_to_string(&keys).expect("a file")).expect("keys");
+    record.seed([6; 32]);
     record.judge(&ring.trust(), "2024-01-03T00:00:00Z");
+    acknowledge(&report, &mut record, || (secret.clone(), who()));
+    let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
+    let subject = small_subject(source, FlightRules::default());
+    let relied_on = record.entries().iter().map(|entry| entry.digest().to_owned()).collect();
+    record.approve(who(), subject, String::new(), relied_on, &secret);
+    (written_file(name, &record.to_json()), record.to_json(), keys)
+}
+
+/// Acknowledges the items of a report's plan that need attention.
+fn acknowledge(report: &Value, record: &mut Record, mut who: impl FnMut() -> (SecretKey, Who)) {
     for line in report["plan"].as_array().expect("lines").iter().filter(|line| line["status"] == "attention")
     {
         let said = |member: &str| line[member].as_str().map(str::to_owned);
         let (section, criterion) = (Section::Plan, said("criterion"));
         let (text, place) = (said("text").expect("words"), said("place").expect("a place"));
         let line = LineKey { section, text, criterion, place };
-        record.add(who(), Act::Acknowledge { line, text: "As meant.".to_owned() }, &secret);
+        let (secret, who) = who();
+        record.add(who, Act::Acknowledge { line, text: "As meant.".to_owned() }, &secret);
     }
-    let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
-    let subject = Subject {
+}
+
+/// What is approved of the small mission.
+fn small_subject(source: String, rules: FlightRules) -> Subject {
+    Subject {
         source,
         goal: snapshot::Goal::Default,
         seed: 0,
-        rules: FlightRules::default(),
+        rules,
         counts: [0; 3],
         lines: Vec::new(),
         plan: Value::Null,
         robustness: None,
         runs: None,
-    };
-    let relied_on = record.entries().iter().map(|entry| entry.digest().to_owned()).collect();
-    record.approve(who(), subject, String::new(), relied_on, &secret);
-    (written_file(name, &record.to_json()), record.to_json(), keys)
+    }
 }
 
 fn root() -> PathBuf {
@@ -285,10 +298,192 @@ fn forged_signatures_and_entries_that_are_left_out_are_no_approval() {
     assert_eq!((status, &answer["entries"][0]["signature"]), (Some(1), &json!("unsigned")));
 }
 
+/// A history in which the Chair set a board of so many, and the keys of the board; `then` continues it.
+fn before_a_board_of(
+    approvals: u32,
+    name: &str,
+    then: impl FnOnce(&mut Record, &dyn Fn(&str) -> (SecretKey, Who)),
+) -> [String; 2] {
+    let output = enroute(&["report", SMALL, "--format", "json"]);
+    let report: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    let text = |member: &str| report[member].as_str().expect("a text").to_owned();
+    let secret = |name: &str| SecretKey::from_bytes([name.as_bytes()[0]; 32]);
+    let mut ring = KeyRing::default();
+    for name in ["Chair", "Ada", "Grace"] {
+        ring.add(Person::new(name, secret(name))).expect("a name");
+    }
+    let minute = std::cell::Cell::new(0);
+    let who = |by: &str| {
+        minute.set(minute.get() + 1);
+        let time = format!("2024-01-02T03:{:02}:00Z", minute.get());
+        let (content_hash, plan_hash) = (text("content_hash"), text("plan_hash"));
+        let who = Who { by: by.to_owned(), role: "Reviewer".to_owned(), time, content_hash, plan_hash };
+        (secret(by), who)
+    };
+    let mut record = Record::new("small");
+    record.seed([name.as_bytes()[0]; 32]);
+    record.judge(&ring.trust(), "2024-01-03T00:00:00Z");
+    let (secret, chair) = who("Chair");
+    record.add(chair, Act::Rules { rules: board_of(approvals) }, &secret);
+    acknowledge(&report, &mut record, || who("Chair"));
+    then(&mut record, &who);
+    let keys = written_file(&format!("{name}.keys.json"), &ring.to_json(false));
+    [written_file(&format!("{name}.review.json"), &record.to_json()), keys]
+}
+
+fn board_of(approvals: u32) -> FlightRules {
+    FlightRules { board: vec![Seat::new("Reviewer", approvals)], ..FlightRules::default() }
+}
+
+/// Someone approves the small mission under these flight rules.
+fn approve_small(record: &mut Record, rules: &FlightRules, (secret, who): (SecretKey, Who)) {
+    let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
+    let relied_on = record.entries().iter().filter(|entry| matches!(entry.act, Act::Acknowledge { .. }));
+    let relied_on = relied_on.map(|entry| entry.digest().to_owned()).collect();
+    record.approve(who, small_subject(source, rules.clone()), String::new(), relied_on, &secret);
+}
+
+#[test]
+fn one_person_who_weakens_the_board_does_not_approve_alone() {
+    let [path, keys] = before_a_board_of(2, "weakened", |record, who| {
+        let (secret, ada) = who("Ada");
+        record.add(ada, Act::Rules { rules: board_of(1) }, &secret);
+        approve_small(record, &board_of(1), who("Ada"));
+    });
+    let (status, answer) = verified(&[&path, "--trust", &keys, "--mission", SMALL]);
+    assert_eq!((status, &answer["approved"]), (Some(1), &json!(false)), "{answer}");
+    let rules = &answer["rules"];
+    assert_eq!(rules["in_force"]["board"][0]["approvals"], 2);
+    assert_eq!(
+        (&rules["board_by"][0]["by"], &rules["by"][0]["time"]),
+        (&json!("Chair"), &json!("2024-01-02T03:01:00Z"))
+    );
+    assert_eq!((&rules["proposed"][0]["agreed"], &rules["proposed"][0]["wanted"]), (&json!(1), &json!(2)));
+    let proposed = answer["entries"].as_array().expect("a list").iter().rev().nth(1).expect("an entry");
+    assert!(proposed["without_effect"].as_str().is_some_and(|why| why.contains("1 of 2")), "{answer}");
+    let said = written(&enroute(&["review", "verify", &path, "--trust", &keys, "--mission", SMALL]));
+    for line in [
+        "board: 2 Reviewer; set by Chair 2024-01-02T03:01:00Z\n",
+        "proposed board: 1 Reviewer; set by Ada 2024-01-02T03:",
+        "[valid; weakens the board, with 1 of 2 approvals of the board in force]\n",
+    ] {
+        assert!(said.contains(line), "{line}{said}");
+    }
+}
+
+#[test]
+fn the_board_and_the_rules_of_a_file_have_to_be_in_force() {
+    let verify = |path: &str, keys: &str, rules: &str| {
+        let rules = written_file("required.rules.json", rules);
+        verified(&[path, "--trust", keys, "--mission", SMALL, "--rules", &rules])
+    };
+    // A new history: the usual board needs one approval, and one is given.
+    let (alone, _, key) = approved_history("alone.review.json");
+    assert_eq!(verified(&[&alone, "--trust", &key, "--mission", SMALL]).0, Some(0));
+    let (status, answer) = verify(&alone, &key, &board_of(2).to_json());
+    assert_eq!((status, &answer["approved"]), (Some(1), &json!(false)));
+    assert_eq!(answer["blockers"], json!(["not the required flight rules: board"]));
+    assert_eq!(answer["rules"]["board_by"], json!([]), "no one has set any");
+    let said = written(&enroute(&["review", "verify", &alone, "--trust", &key]));
+    assert!(said.contains("board: 1 Reviewer; default, no one has set any\n"), "{said}");
+    // Both approve.
+    let [path, keys] = before_a_board_of(2, "both", |record, who| {
+        for by in ["Ada", "Grace"] {
+            approve_small(record, &board_of(2), who(by));
+        }
+    });
+    let strict = FlightRules { slope_deg: Some(1.0), ..board_of(2) }.to_json();
+    let part = |members: &str| format!("{{\"format\": \"enroute-rules/1\", {members}}}");
+    for (rules, expected) in [
+        (board_of(2).to_json(), None),
+        (part("\"board\": [{\"role\": \"Reviewer\", \"approvals\": 2}]"), None),
+        (part("\"slope_deg\": 15, \"margin\": 0"), None),
+        (strict, Some("slope_deg")),
+        (part("\"slope_deg\": null"), Some("slope_deg")),
+        (board_of(1).to_json(), Some("board")),
+        (part("\"board\": [{\"role\": \"Press\", \"approvals\": 2}]"), Some("board")),
+    ] {
+        let (status, answer) = verify(&path, &keys, &rules);
+        assert_eq!(status, Some(i32::from(expected.is_some())), "{rules}: {answer}");
+        let blockers = expected.map(|name| format!("not the required flight rules: {name}"));
+        assert_eq!(answer["blockers"], json!(blockers.as_slice()), "{rules}");
+    }
+    for wrong in [part("\"slope\": 1"), "{\"format\": \"enroute-rules/1\"}".to_owned(), "{}".to_owned()] {
+        let rules = written_file("wrong.rules.json", &wrong);
+        let output = enroute(&["review", "verify", &path, "--trust", &keys, "--rules", &rules]);
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {output:?}");
+    }
+}
+
+#[test]
+fn rules_of_another_history_of_the_same_mission_do_not_make_one_approval_enough() {
+    let [lax, keys] = before_a_board_of(1, "lax", |_, _| {});
+    let read =
+        |path: &str| Record::from_json(&std::fs::read_to_string(path).expect("a file")).expect("a record");
+    let theirs = read(&lax).entries()[0].clone();
+    let mut approval = None;
+    let [path, _] = before_a_board_of(2, "mine", |record, who| {
+        let (secret, ada) = who("Ada");
+        let before: Vec<String> = record.heads().map(str::to_owned).collect();
+        approve_small(record, &board_of(1), (secret.clone(), ada));
+        let said = record.entries().last().expect("the approval").said();
+        let former = [before, vec![theirs.digest().to_owned()]].concat();
+        let said = Said { former, rules: board_of(1).digest(), ..(**said).clone() };
+        approval = Some(Entry::signed(said, &secret));
+    });
+    let approval = approval.expect("it was signed");
+    let mut document: Value = serde_json::from_str(&read(&path).to_json()).expect("JSON");
+    let entries = document["entries"].as_array_mut().expect("a list");
+    entries.pop();
+    for entry in [&theirs, &approval] {
+        entries
+            .push(json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() }));
+    }
+    document["heads"] = json!([approval.digest()]);
+    let spliced = written_file("spliced.review.json", &document.to_string());
+    let (status, answer) = verified(&[&spliced, "--trust", &keys, "--mission", SMALL]);
+    assert_eq!(
+        (status, &answer["intact"], &answer["approved"]),
+        (Some(1), &json!(true), &json!(false)),
+        "{answer}"
+    );
+    assert_eq!(
+        (&answer["history"], &answer["rules"]["in_force"]["board"][0]["approvals"]),
+        (&document["history"], &json!(2))
+    );
+    let entries = answer["entries"].as_array().expect("a list").clone();
+    let added = entries.iter().find(|entry| entry["digest"] == theirs.digest()).expect("it is told");
+    assert!(added["problem"].as_str().is_some_and(|why| why.contains("follows no entry")), "{added}");
+}
+
+#[test]
+fn several_entries_can_be_required() {
+    let [path, keys] = before_a_board_of(2, "several", |record, who| {
+        for by in ["Ada", "Grace"] {
+            approve_small(record, &board_of(2), who(by));
+        }
+    });
+    let document: Value =
+        serde_json::from_str(&std::fs::read_to_string(&path).expect("a file")).expect("JSON");
+    let [first, .., last] = document["entries"].as_array().expect("a list").as_slice() else {
+        panic!("at least two entries");
+    };
+    let digest = |entry: &Value| entry["digest"].as_str().expect("a digest").to_owned();
+    let (first, last, other) = (digest(first), digest(last), "0".repeat(64));
+    let has = |digests: [&str; 2]| {
+        verified(&[&path, "--trust", &keys, "--mission", SMALL, "--has", digests[0], "--has", digests[1]])
+    };
+    assert_eq!(has([&first, &last]).0, Some(0));
+    for digests in [[&first, &other], [&other, &last]] {
+        let (status, answer) = has(digests.map(String::as_str));
+        assert_eq!((status, &answer["intact"]), (Some(1), &json!(false)));
+        assert!(answer["reason"].as_str().is_some_and(|why| why.contains(&other)), "{answer}");
+    }
+}
+
 /// Comments and names cannot add lines to the answer.
 #[test]
 fn words_of_a_history_are_one_line_each_and_names_that_hide_are_refused() {
-    use review::record::{Act, Record, Who};
     let (path, _, keys) = approved_history("spoofed.review.json");
     let (secret, _) = ada("spoofed.keys.json");
     let line = "   9  2024-01-02T03:04:05Z  Grace (Reviewer) approved [valid]";

@@ -102,7 +102,9 @@ fn show_entry(
                 short(&entry.plan_hash),
                 short(entry.digest())
             ));
+            let record = context.state.review.record();
             let (sign, color) = match check.signature {
+                _ if record.without_effect(entry).is_some() => (Icon::Warning, tokens.warning),
                 _ if check.counts() => (Icon::Check, tokens.good),
                 Signature::Broken => (Icon::Error, tokens.error),
                 Signature::Valid | Signature::Unknown | Signature::Unsigned => {
@@ -110,7 +112,7 @@ fn show_entry(
                 }
             };
             icon::label(ui, sign, color);
-            ui.label(RichText::new(check.words()).small().color(color));
+            ui.label(RichText::new(record.words_of(entry, check)).small().color(color));
             if let Some(taken_back) = taken_back {
                 ui.label(RichText::new(taken_back).small().color(tokens.warning));
             }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
 use review::flight_rule::{self, MissionRule, Outcome};
+use review::ruling::Proposal;
 use review::seat::{MAX_APPROVALS, MAX_SEATS, Seat};
 use review::{FlightRules, SuccessRate};
 use theme::space;
@@ -35,7 +36,9 @@ impl Rules {
         let record = context.state.review.record();
         let present = record.rules().clone();
         // What others have set in the meantime counts.
-        self.draft.take_if(|(before, draft)| *before != present || *draft == present);
+        let proposals = record.proposals();
+        let is_known = |draft: &FlightRules| proposals.iter().any(|proposal| proposal.rules == draft);
+        self.draft.take_if(|(before, draft)| *before != present || *draft == present || is_known(draft));
         let note = match (&self.draft, record.ruled()) {
             (Some(_), _) => "unsaved changes".to_owned(),
             (None, Some((ruled, _))) if !ruled.by.is_empty() => format!("set by {}", ruled.by),
@@ -47,6 +50,9 @@ impl Rules {
         }
         let mut rules = self.draft.as_ref().map_or_else(|| present.clone(), |(_, draft)| draft.clone());
         people::indented(ui, |ui| {
+            for proposal in &proposals {
+                agreement(ui, context, proposal, commands);
+            }
             fields(ui, context, &mut rules);
             ui.add_space(space::S);
             let problem = rules.problem();
@@ -70,6 +76,29 @@ impl Rules {
         });
         self.draft = (rules != present).then_some((present, rules));
     }
+}
+
+/// A change that weakens the board, and the button that agrees to it.
+fn agreement(ui: &mut Ui, context: &Context<'_>, proposal: &Proposal<'_>, commands: &mut CommandSender) {
+    let names: Vec<String> = proposal.by.iter().map(|entry| people::who(entry)).collect();
+    let present = context.state.review.record().rules();
+    let same_board = FlightRules { board: present.board.clone(), ..proposal.rules.clone() };
+    let more = if same_board == *present { "" } else { " Other flight rules change, too." };
+    let text = format!(
+        "Proposed by {}: required approvals {}.{more} Consent: {}.",
+        names.join(", "),
+        proposal.rules.board_in_words(),
+        proposal.consent()
+    );
+    ui.label(RichText::new(text).color(context.tokens.warning));
+    let ring = context.state.keys.ring();
+    let key = ring.own_named(&context.state.settings.reviewer).map(|person| &person.key);
+    let is_ready = key.is_some() && proposal.by.iter().all(|entry| entry.key.as_ref() != key);
+    let agree = ui.add_enabled(is_ready, Button::new("Agree"));
+    if agree.on_hover_text("Sign these flight rules and this board, too").clicked() {
+        commands.send(Command::Review(ReviewCommand::SetRules(Box::new(proposal.rules.clone()))));
+    }
+    ui.add_space(space::S);
 }
 
 fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
@@ -181,7 +210,7 @@ fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
 /// Who has to approve, and how many of them.
 fn board(ui: &mut Ui, context: &Context<'_>, board: &mut Vec<Seat>) {
     ui.add_space(space::S);
-    row::muted_word(ui, "Required approvals");
+    row::muted_word(ui, "Required approvals: to weaken them later, this board must agree");
     let mut gone = None;
     let is_only = board.len() == 1;
     for (index, seat) in board.iter_mut().enumerate() {

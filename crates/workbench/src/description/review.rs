@@ -189,6 +189,8 @@ pub struct HistoryEntry {
     pub problem: Option<String>,
     /// Whether it counts.
     pub counts: bool,
+    /// Why it has no effect although it counts: it weakens the board, which has not agreed.
+    pub without_effect: Option<String>,
 }
 
 /// Someone has approved a plan.
@@ -317,6 +319,7 @@ fn history(record: &Record) -> Vec<HistoryEntry> {
         signature: check.signature,
         problem: check.problem.clone(),
         counts: check.counts(),
+        without_effect: record.without_effect(entry),
     };
     record.checked().map(entry).collect()
 }

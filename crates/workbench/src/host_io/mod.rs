@@ -22,11 +22,12 @@ pub use autosave::Autosave;
 pub use remote::Remote;
 
 /// What the board said of the open mission when that was last kept.
-pub fn recall_review(host: &dyn Host, state: &mut AppState) {
+pub fn recall_review(host: &mut dyn Host, state: &mut AppState) {
     let mission = state.mission_key();
     let kept = host.stored(&ReviewState::key(&mission));
     let aside = host.stored(&ReviewState::aside_key(&mission, 0));
-    state.reviewing().recall(kept.as_deref(), aside);
+    let random = host.secret_bytes();
+    state.reviewing().recall(kept.as_deref(), aside, random);
 }
 
 /// Keeps what the board said of the open mission; `joins` adds what is kept already, perhaps by another tab. A full

@@ -14,6 +14,7 @@ use layout::timeline::rule::RuleTrack;
 use link::Request;
 use review::keys::KeyRing;
 use review::record::Act;
+use review::ruling::Proposal;
 use review::{FlightRules, Record, Review, content_hash, plan_hash};
 use smol_str::SmolStr;
 use snapshot::{Robustness, Snapshot, Stage};
@@ -95,6 +96,8 @@ pub struct ReviewState {
     plan: Option<(Arc<Snapshot>, String)>,
     /// The minute since 1970 at which the history was last checked.
     judged_minute: i64,
+    /// Random bytes for the first entry of a history that is started here; `None` where the host has no source of such.
+    random: Option<[u8; 32]>,
     /// Whether the report is to be written as soon as there is a review for it.
     pub(crate) wants_report: bool,
 }
@@ -224,6 +227,8 @@ impl ReviewState {
         if self.record.entries().is_empty() {
             self.record.mission.clone_from(&kept.mission);
         }
+        // Where two tabs start a history at the same time, that of the first one stays.
+        self.record.follow_history_of(&kept);
         self.record.merge(kept);
     }
 
@@ -341,8 +346,22 @@ impl Reviewing<'_> {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
-        if self.sign(by, Act::Rules { rules }) {
-            self.judge();
+        let mut proposals = self.review.record.proposals().into_iter();
+        let proposal = proposals.find(|proposal| *proposal.rules == rules);
+        let key = self.keys.secret(&by.name).map(|(key, _)| key).ok();
+        let has_signed = |proposal: Proposal<'_>| proposal.by.iter().any(|entry| entry.key == key);
+        if key.is_some() && proposal.is_some_and(has_signed) {
+            self.window.failed("You have already agreed to these flight rules".to_owned());
+            return;
+        }
+        if !self.sign(by, Act::Rules { rules: rules.clone() }) {
+            return;
+        }
+        self.judge();
+        let mut proposals = self.review.record.proposals().into_iter();
+        if let Some(proposal) = proposals.find(|proposal| *proposal.rules == rules) {
+            let words = format!("Proposed, not in force yet: {}", proposal.consent());
+            self.window.info(&words);
         }
     }
 
@@ -371,6 +390,9 @@ impl Reviewing<'_> {
                 );
                 self.window.failed(words);
             }
+            Ok(record) if !self.can_join(&record) => {
+                self.window.failed(format!("{name} is another history of this mission. No entries added."));
+            }
             Ok(record) => {
                 let (count, left_out) = self.merge_foreign(record);
                 let entries = if count == 1 { "entry" } else { "entries" };
@@ -394,6 +416,13 @@ impl Reviewing<'_> {
                 self.window.failed(format!("Couldn't add {name}: {reason}. No entries added."));
             }
         }
+    }
+
+    /// Whether a record from elsewhere is the history that is here, or can take its place.
+    fn can_join(&self, record: &Record) -> bool {
+        let mut record = record.clone();
+        record.judge(&self.keys.ring().trust(), &self.utc_now());
+        self.review.record.can_join(&record)
     }
 
     /// Adds a record from elsewhere. Returns how many entries are new, and for how many contents runs were left out.
@@ -442,7 +471,9 @@ impl Reviewing<'_> {
     }
 
     /// The host found this kept under the open mission's name, and this that could not be used before.
-    pub(crate) fn recall(&mut self, kept: Option<&str>, aside: Option<String>) {
+    /// `random` is for a new history.
+    pub(crate) fn recall(&mut self, kept: Option<&str>, aside: Option<String>, random: Option<[u8; 32]>) {
+        self.review.random = random;
         self.review.of = self.mission_key.clone();
         let set_aside = self.review.set_aside.remove(&self.mission_key);
         let reason = "an earlier copy was unreadable".to_owned();
@@ -478,7 +509,12 @@ impl Reviewing<'_> {
 
     /// Adds what came with a mission.
     pub(crate) fn join(&mut self, record: Record) {
-        self.merge_foreign(record);
+        if self.can_join(&record) {
+            self.merge_foreign(record);
+        } else {
+            self.window
+                .failed("The mission came with another history of its review. No entries added.".to_owned());
+        }
     }
 
     /// Another mission is open now.

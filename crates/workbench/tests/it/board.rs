@@ -738,3 +738,41 @@ fn a_waiver_stands_for_an_acknowledgment_until_its_day() {
     app.run(Command::WriteReport);
     assert!(app.world.saved_text().contains("lapsed</span>"));
 }
+
+/// The board that decides, and how many people it needs in its first role.
+fn board(app: &App) -> (Value, Value) {
+    let seat = app.json()["review"]["rules"]["board"][0].clone();
+    (seat["role"].clone(), seat["approvals"].clone())
+}
+
+#[test]
+fn a_board_is_weakened_only_once_it_agrees() {
+    let mut app = before_the_board();
+    let one = json!({ "board": [{ "role": "Science", "approvals": 1 }] });
+    app.sign_as("Ada");
+    app.dispatch("review.rules", &one);
+    let toast = last_toast(&app);
+    assert!(toast.contains("not in force yet") && toast.contains("1 of 2"), "{toast}");
+    assert_eq!(app.json()["review"]["board"].as_array().map(Vec::len), Some(2));
+    let entry = app.json()["review"]["history"].as_array().and_then(|all| all.last().cloned());
+    let entry = entry.expect("an entry");
+    assert!(entry["withoutEffect"].is_string() && entry["counts"] == true, "{entry}");
+    // Once more is not two people.
+    app.dispatch("review.rules", &one);
+    assert!(last_toast(&app).contains("already agreed"), "{}", last_toast(&app));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    assert_eq!(status(&app), "in-review");
+    app.sign_as("Grace");
+    app.dispatch("review.rules", &one);
+    assert_eq!(
+        (board(&app), app.json()["review"]["board"].as_array().map(Vec::len)),
+        ((json!("Science"), json!(1)), Some(1))
+    );
+    assert_ne!(status(&app), "approved", "Ada approved under other rules");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    assert_eq!(status(&app), "approved");
+    // Who makes it stricter needs no one.
+    app.dispatch("review.rules", &json!({ "board": [{ "role": "Science", "approvals": 2 }] }));
+    assert_eq!((board(&app), status(&app)), ((json!("Science"), json!(2)), json!("lapsed")));
+}

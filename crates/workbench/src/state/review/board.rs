@@ -157,6 +157,14 @@ impl Reviewing<'_> {
         self.name_record();
         self.judge_record();
         let mut record = self.review.record.clone();
+        match self.review.random {
+            Some(random) => record.seed(random),
+            None if record.entries().is_empty() => {
+                self.window.failed("Not signed: this browser offers no secret random numbers".to_owned());
+                return false;
+            }
+            None => {}
+        }
         let added = add(&mut record, who, &secret);
         if let Some(check) = record.check_of(&added).filter(|check| !check.counts()) {
             let problem = check.problem.as_deref().unwrap_or(check.signature.name());
