@@ -1105,3 +1105,29 @@ fn names_and_roles_with_characters_that_cannot_be_seen_are_refused() {
         assert!(rules.problem().is_some_and(|why| why.contains("role")), "{role:?}");
     }
 }
+
+/// Programs take the first or the last of two members with the same name, so people may see something else.
+#[test]
+fn documents_with_two_members_of_one_name_are_refused() {
+    let board = approved();
+    let document = board.record.to_json();
+    for (from, to, name) in [
+        ("\"entries\": [", "\"entries\": [], \"entries\": [", "`entries`"),
+        ("\"role\": \"Reviewer\",", "\"role\": \"Press\", \"role\": \"Reviewer\",", "`role`"),
+        ("\"by\": \"Ada\",", "\"by\": \"Eve\", \"by\": \"Ada\",", "`by`"),
+        ("\"subjects\": {", "\"subjects\": {}, \"subjects\": {", "`subjects`"),
+    ] {
+        let twice = document.replacen(from, to, 1);
+        assert_ne!(twice, document, "{from}");
+        let why = Record::from_json(&twice).expect_err(name);
+        assert!(matches!(&why, RecordError::Damaged(why) if why.contains(name)), "{why}");
+    }
+    let mut ring = KeyRing::default();
+    ring.add(Person::new("Ada", key("Ada"))).expect("a name");
+    let keys = ring.to_json(false).replace("\"name\": \"Ada\"", "\"name\": \"Eve\", \"name\": \"Ada\"");
+    let why = KeyRing::from_json(&keys).expect_err("two names");
+    assert!(matches!(&why, KeyError::Damaged(why) if why.contains("`name`")), "{why}");
+    let rules = "{\"format\": \"enroute-rules/1\", \"slope_deg\": 1, \"slope_deg\": 90}";
+    let why = FlightRules::from_json(rules).expect_err("two slopes");
+    assert!(why.contains("`slope_deg`"), "{why}");
+}

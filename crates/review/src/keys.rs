@@ -11,7 +11,7 @@ use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::names;
+use super::{names, strict};
 
 /// A public key, in 64 hexadecimal digits. What came from elsewhere may be anything; that signs nothing.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -224,7 +224,7 @@ impl KeyRing {
     /// Reads a document of keys.
     pub fn from_json(text: &str) -> Result<Self, KeyError> {
         let damaged = |error: serde_json::Error| KeyError::Damaged(error.to_string());
-        let mut document: Value = serde_json::from_str(text).map_err(damaged)?;
+        let mut document = strict::from_str(text).map_err(damaged)?;
         match document["format"].as_str() {
             Some(KEYS_FORMAT) => {}
             Some(newer) if newer.starts_with(FORMATS) => return Err(KeyError::Newer(newer.to_owned())),

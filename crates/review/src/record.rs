@@ -17,7 +17,7 @@ pub use super::entry::{Act, Entry, LineKey, Rate, Runs, Said, SeenLine, Subject,
 use super::keys::{SecretKey, Trust};
 use super::ruling::{Ruling, followers};
 use super::sealed::Sealed;
-use super::{FlightRules, former_record};
+use super::{FlightRules, former_record, strict};
 
 /// The history of one mission's review, with what was approved and the runs that were made.
 #[derive(Clone, Debug, Default)]
@@ -436,7 +436,7 @@ impl Record {
     /// Documents of the first version have no history: what was said and approved becomes one, in order of time.
     pub fn from_json(text: &str) -> Result<Self, RecordError> {
         let damaged = |error: serde_json::Error| RecordError::Damaged(error.to_string());
-        let mut value: Value = serde_json::from_str(text).map_err(damaged)?;
+        let mut value = strict::from_str(text).map_err(damaged)?;
         match value["format"].as_str() {
             Some(FORMAT | UNSIGNED_FORMAT) => {}
             Some(former_record::FORMAT) => {

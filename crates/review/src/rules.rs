@@ -13,6 +13,7 @@ use super::flight_rule::MissionRule;
 use super::keys::PublicKey;
 use super::sealed::Sealed;
 use super::seat::{self, Seat};
+use super::strict;
 
 /// The thresholds of a review.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -194,7 +195,7 @@ impl FlightRules {
 
 /// The members of a document of flight rules, without its format.
 fn members(text: &str) -> Result<Map<String, Value>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let value = strict::from_str(text).map_err(|error| error.to_string())?;
     let Value::Object(mut members) = value else {
         return Err(format!("this is not a flight rules file: \"format\" must be \"{RULES_FORMAT}\""));
     };
