@@ -1131,3 +1131,42 @@ fn documents_with_two_members_of_one_name_are_refused() {
     let why = FlightRules::from_json(rules).expect_err("two slopes");
     assert!(why.contains("`slope_deg`"), "{why}");
 }
+
+/// Who reads what has changed since the last approval would read an invented text.
+#[test]
+fn an_approval_of_another_text_than_its_content_hash_names_does_not_count() {
+    let invented = |board: &mut Board, change: &dyn Fn(&mut Subject)| {
+        let plan = Value::Null;
+        let mut subject = Subject::new(&board.review, &board.source, Goal::Default, 0, plan, None);
+        change(&mut subject);
+        let who = board.who("Ada");
+        board.record.approve(who, subject, String::new(), Vec::new(), &key("Ada"));
+        last_check(&board.record).1
+    };
+    let text = |subject: &mut Subject| subject.source.push_str(" // harmless");
+    let map = |subject: &mut Subject| {
+        let asset = "flat".into();
+        subject.map = Some(snapshot::MapKey { asset, cell_mm: 1000, origin_mm: [0, 0], version: None });
+    };
+    let changes: [&dyn Fn(&mut Subject); 4] =
+        [&text, &map, &|it| it.seed = 1, &|it| it.goal = Goal::Scenario("Other".into())];
+    for change in changes {
+        let mut board = Board::new(LASTING);
+        board.approve("Grace");
+        let problem = invented(&mut board, change);
+        assert!(problem.contains("not the one of its content hash"), "{problem}");
+        assert_eq!(board.seats(), "Reviewer 1 of 2");
+        let (last, _) = board.record.last_approval().expect("that of Grace");
+        assert_eq!(last.by, "Grace");
+    }
+    // Histories of earlier versions have no map: an invented text shows once the text of the content is known.
+    let mut board = Board::new(LASTING);
+    board.record = judged(Record::new("enroute"));
+    board.say("Chair", Act::Rules { rules: board.review.rules.clone() });
+    board.approve("Grace");
+    assert_eq!(invented(&mut board, &text), "");
+    let (hash, source) = (board.review.content_hash.clone(), board.source.clone());
+    board.record.learn_source(&hash, &source);
+    assert!(last_check(&board.record).1.contains("not the one of its content hash"));
+    assert_eq!(board.seats(), "Reviewer 1 of 2");
+}

@@ -142,6 +142,9 @@ fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
         _ if record.precedes_its_rules(entry) => {
             Some("it comes before the flight rules that it signs".to_owned())
         }
+        Act::Approve { .. } if record.has_other_content(entry) => {
+            Some("the text that it approves is not the one of its content hash".to_owned())
+        }
         Act::Approve { .. }
             if record.subject(entry).is_none_or(|subject| subject.rules.digest() != entry.rules) =>
         {

@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use snapshot::Goal;
+use snapshot::{Goal, MapKey};
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::keys::{PublicKey, SecretKey};
@@ -235,6 +235,10 @@ pub struct Subject {
     pub goal: Goal,
     /// The seed of its paths.
     pub seed: u64,
+    /// The map of its ground, if it has one. With it, the content hash of the text can be checked. Histories of earlier
+    /// versions do not have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapKey>,
     /// The flight rules that it was held against.
     pub rules: FlightRules,
     /// How many lines of the review had passed, needed attention, and had failed.
@@ -281,7 +285,7 @@ impl Rate {
 }
 
 impl Subject {
-    /// What is approved when a review is: `plan` is that of the reviewed content, as JSON.
+    /// What is approved when a review is of a mission without a map: `plan` is that of the reviewed content, as JSON.
     pub fn new(
         review: &Review,
         source: &str,
@@ -294,6 +298,7 @@ impl Subject {
             source: source.to_owned(),
             goal,
             seed,
+            map: None,
             rules: review.rules.clone(),
             counts: review.counts(),
             lines: seen_lines(review),
@@ -301,6 +306,11 @@ impl Subject {
             robustness: found.map(Rate::new),
             runs: found.map(|found| Runs::new(&review.content_hash, found).digest()),
         }
+    }
+
+    /// The content hash of what was approved.
+    pub fn content_hash(&self) -> String {
+        super::content_hash(&self.source, self.map.as_ref(), &self.goal, self.seed)
     }
 }
 

@@ -75,7 +75,7 @@ pub(super) fn read(document: Value) -> Result<Record, serde_json::Error> {
     }
     for SignOff { name, time, content_hash, counts, source, goal, seed, rules } in former.sign_offs {
         let (lines, plan, robustness, runs) = (Vec::new(), Value::Null, None, None);
-        let subject = Subject { source, goal, seed, rules, counts, lines, plan, robustness, runs };
+        let subject = Subject { source, goal, seed, map: None, rules, counts, lines, plan, robustness, runs };
         parts.push((who(name, DEFAULT_ROLE, time, content_hash), Part::Approval(Box::new(subject))));
     }
     if let Some(Ruled { by, time, rules }) = former.ruled {

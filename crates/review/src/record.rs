@@ -50,10 +50,26 @@ pub struct Record {
     /// The digests of the entries that no other was made after.
     heads: BTreeSet<String>,
     /// What approvals are about, by its digest.
-    subjects: BTreeMap<String, Sealed<Subject>>,
+    subjects: BTreeMap<String, Kept>,
+    /// Texts that are known by their content hashes.
+    known_sources: BTreeMap<String, String>,
     /// What runs with chance came to, the latest content last. Anybody can make them again; an approval signs their digest
     /// ([`Record::drop_unsigned_runs`]).
     pub runs: Vec<Runs>,
+}
+
+/// What was approved, with the content hash of its text as far as its map is known.
+#[derive(Clone, Debug, PartialEq)]
+struct Kept {
+    subject: Sealed<Subject>,
+    content_hash: String,
+}
+
+impl Kept {
+    fn new(subject: Sealed<Subject>) -> Self {
+        let content_hash = subject.content_hash();
+        Self { subject, content_hash }
+    }
 }
 
 /// Contents of which runs are kept.
@@ -237,8 +253,33 @@ impl Record {
     /// What an approval is about.
     pub fn subject(&self, entry: &Said) -> Option<&Subject> {
         match &entry.act {
-            Act::Approve { subject, .. } => self.subjects.get(subject).map(|sealed| &**sealed),
+            Act::Approve { subject, .. } => self.subjects.get(subject).map(|kept| &*kept.subject),
             _ => None,
+        }
+    }
+
+    /// Whether an approval has signed a text, map, goal or seed of another content than it names. In histories of earlier
+    /// versions the map is not known: then only a text counts as another one whose content is known here.
+    pub(super) fn has_other_content(&self, entry: &Entry) -> bool {
+        let Act::Approve { subject, .. } = &entry.act else { return false };
+        let Some(Kept { subject, content_hash }) = self.subjects.get(subject) else { return false };
+        let has_map = !entry.history.is_empty() || !entry.nonce.is_empty() || subject.map.is_some();
+        let is_other = has_map && *content_hash != entry.content_hash;
+        is_other || self.known_sources.get(&entry.content_hash).is_some_and(|known| *known != subject.source)
+    }
+
+    /// Whether an approval of this content has signed another text.
+    pub fn contradicts(&self, content_hash: &str, source: &str) -> bool {
+        let is_known = self.known_sources.get(content_hash).is_some_and(|known| known == source);
+        let mut entries = self.entries.iter().filter(|entry| entry.content_hash == content_hash);
+        !is_known && entries.any(|entry| self.subject(entry).is_some_and(|subject| subject.source != source))
+    }
+
+    /// Notes the text of a content, and checks the entries again by it.
+    pub fn learn_source(&mut self, content_hash: &str, source: &str) {
+        if self.contradicts(content_hash, source) {
+            self.known_sources.insert(content_hash.to_owned(), source.to_owned());
+            self.check_again();
         }
     }
 
@@ -363,7 +404,7 @@ impl Record {
     pub(super) fn keep_subject(&mut self, subject: Subject) -> String {
         let subject = Sealed::new(subject);
         let digest = subject.digest().to_owned();
-        self.subjects.insert(digest.clone(), subject);
+        self.subjects.insert(digest.clone(), Kept::new(subject));
         digest
     }
 
@@ -395,7 +436,7 @@ impl Record {
         let entry = |entry: &Entry| json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() });
         let entries = self.entries.iter().map(entry);
         let subjects: Map<String, Value> =
-            self.subjects.iter().map(|(digest, subject)| (digest.clone(), subject.raw().clone())).collect();
+            self.subjects.iter().map(|(digest, kept)| (digest.clone(), kept.subject.raw().clone())).collect();
         let document = json!({
             "format": FORMAT,
             "program": crate::PROGRAM,
@@ -478,7 +519,7 @@ impl Record {
                 let what = format!("the approved subject {} has been changed", short(&digest));
                 return Err(RecordError::Broken(what));
             }
-            record.subjects.insert(digest, subject);
+            record.subjects.insert(digest, Kept::new(subject));
         }
         let Value::Array(entries) = value["entries"].take() else { return Err(lacks("entries")) };
         let mut known = BTreeSet::new();

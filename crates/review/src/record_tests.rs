@@ -48,6 +48,7 @@ pub(super) fn subject() -> Subject {
         source: "scenario S = { }".to_owned(),
         goal: Goal::Default,
         seed: 7,
+        map: None,
         rules: FlightRules::default(),
         counts: [3, 1, 0],
         lines: Vec::new(),

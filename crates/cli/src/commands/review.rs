@@ -89,6 +89,10 @@ impl Verify {
             return self.refuse(&format!("the entry {missing} is missing"));
         }
         let review = self.review(&record)?;
+        let review = review.map(|(review, source)| {
+            record.learn_source(&review.content_hash, &source);
+            review
+        });
         let (present, content_hash) = if let Some(review) = &review {
             (Present::of_review(review), review.content_hash.as_str())
         } else {
@@ -140,8 +144,8 @@ impl Verify {
         Ok(exit(NO))
     }
 
-    /// The review of the mission, or of the text that was approved last; nothing if there is neither.
-    fn review(&self, record: &Record) -> anyhow::Result<Option<Review>> {
+    /// The review of the mission, or of the text that was approved last, with that text; nothing if there is neither.
+    fn review(&self, record: &Record) -> anyhow::Result<Option<(Review, String)>> {
         let (mission, goal, seed) = match (&self.mission, record.last_approval()) {
             (Some(mission), _) => {
                 let (file, scenario) = (mission.clone(), self.scenario.clone());
@@ -161,7 +165,7 @@ impl Verify {
         let found = record.runs_of(&review.content_hash).map(Runs::robustness);
         review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
         limit.answered();
-        Ok(Some(review))
+        Ok(Some((review, snapshot.source.to_string())))
     }
 }
 

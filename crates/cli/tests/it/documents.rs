@@ -210,6 +210,7 @@ fn small_subject(source: String, rules: FlightRules) -> Subject {
         source,
         goal: snapshot::Goal::Default,
         seed: 0,
+        map: None,
         rules,
         counts: [0; 3],
         lines: Vec::new(),

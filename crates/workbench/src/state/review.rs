@@ -548,6 +548,10 @@ impl Reviewing<'_> {
         }
         let settings = self.settings.plan.clone();
         let hash = content_hash(self.document.text(), latest.map.as_ref(), &settings.goal, settings.seed);
+        // An approval of this content may have signed another text, in a history of an earlier version.
+        if self.review.record.contradicts(&hash, self.document.text()) {
+            self.review.record.learn_source(&hash, self.document.text());
+        }
         self.review.current = Some(Current { revision, answered, settings, hash });
         self.follow_plan();
     }

@@ -119,7 +119,9 @@ impl Reviewing<'_> {
         let plan = planned.map_or(Value::Null, |(network, plan)| plan_to_json(network, plan));
         let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
         let found = self.review.hash().and_then(|hash| self.chance.of_content(hash)).cloned();
+        let map = snapshot.and_then(|it| it.map.clone());
         let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
+        let subject = Subject { map, ..subject };
         let relied_on = self.review.standing().map(|standing| standing.relied_on).unwrap_or_default();
         let words = format!("Approved by {} ({})", by.name, by.role);
         let approve = |record: &mut Record, who: Who, secret: &SecretKey| {
