@@ -149,7 +149,7 @@ fn whatever_is_altered_is_said_with_its_entry() {
         let subjects = it["subjects"].as_object_mut().expect("members");
         subjects.values_mut().for_each(|subject| subject["source"] = json!("scenario S = { delay }"));
     };
-    says(altered(other_source), "what was approved");
+    says(altered(other_source), "the approved subject");
     says(altered(|it| it["subjects"] = json!({})), "approves a missing content");
 }
 

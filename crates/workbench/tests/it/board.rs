@@ -554,7 +554,7 @@ fn names_that_look_alike_get_no_keys_and_nobody_signs_without_one() {
     let hidden = ["A\u{200b}da", "\u{202e}adA", "Ada\u{200f}", "\u{3164}"];
     for name in ["Àda", "\u{410}da", "Ａｄａ", "ada", "Ada\u{a0}", " "].iter().chain(&hidden) {
         let why = refused(&mut app, "review.createKey", &json!({ "name": name }));
-        let words = ["taken for “Ada”", "scripts", "must contain letters", "invisible"];
+        let words = ["taken for “Ada”", "scripts", "must contain letters", "invisible", "usual letter"];
         assert!(words.iter().any(|words| why.contains(words)), "{name:?}: {why}");
         assert!(!hidden.contains(name) || why.contains("invisible"), "{name:?}: {why}");
     }
