@@ -271,7 +271,7 @@ impl Reviewing<'_> {
             ReviewCommand::Run => self.run(),
             ReviewCommand::Approve { by, text } => self.approve(&by, text.trim()),
             ReviewCommand::Say { by, act } => self.say(&by, act),
-            ReviewCommand::SetRules(rules) => self.set_rules(*rules),
+            ReviewCommand::SetRules(rules) => self.set_rules(&rules),
             ReviewCommand::SaveRules => self.save_as("rules", self.review.record.rules().to_json()),
             ReviewCommand::SaveRecord => self.save_as("review", self.review.record.to_json()),
             ReviewCommand::ChangeKeys(change) => self.window.ask(Effect::ChangeKeys(change)),
@@ -337,17 +337,17 @@ impl Reviewing<'_> {
         }
     }
 
-    fn set_rules(&mut self, rules: FlightRules) {
+    fn set_rules(&mut self, rules: &FlightRules) {
         if let Some(problem) = rules.problem() {
             self.window.failed(format!("Invalid flight rules: {problem}"));
             return;
         }
-        if *self.review.record.rules() == rules {
+        if self.review.record.rules() == rules {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
         let mut proposals = self.review.record.proposals().into_iter();
-        let proposal = proposals.find(|proposal| *proposal.rules == rules);
+        let proposal = proposals.find(|proposal| proposal.rules == rules);
         let key = self.keys.secret(&by.name).map(|(key, _)| key).ok();
         let has_signed = |proposal: Proposal<'_>| proposal.by.iter().any(|entry| entry.key == key);
         if key.is_some() && proposal.is_some_and(has_signed) {
@@ -359,7 +359,7 @@ impl Reviewing<'_> {
         }
         self.judge();
         let mut proposals = self.review.record.proposals().into_iter();
-        if let Some(proposal) = proposals.find(|proposal| *proposal.rules == rules) {
+        if let Some(proposal) = proposals.find(|proposal| proposal.rules == rules) {
             let words = format!("Proposed, not in force yet: {}", proposal.consent());
             self.window.info(&words);
         }
@@ -369,7 +369,7 @@ impl Reviewing<'_> {
     pub(crate) fn import_rules(&mut self, name: &str, text: &str) {
         match FlightRules::from_json(text) {
             Ok(rules) => {
-                self.set_rules(rules.clone());
+                self.set_rules(&rules);
                 if *self.review.record.rules() != rules {
                     return;
                 }
