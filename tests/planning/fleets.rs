@@ -289,3 +289,58 @@ fn that_a_large_fleet_has_too_little_is_proven() {
     let options = Options { explain: false, relax: false, ..Options::default() };
     assert_eq!(kirk::plan(&network, &options, &mut Unlimited).status, Status::NoPlan);
 }
+
+/// The same rovers without batteries, for which a site takes 20 minutes at least.
+fn fleet_in_time(horizon: u32, objective: &str) -> String {
+    let text = large_fleet()
+        .replace(" requires r.battery >= 30 at start consumes r.battery 5", "")
+        .replace(" consumes r.battery 15", "")
+        .replace("[1,120] moves", "[10,120] moves")
+        .replace("scenario Day[0,400]", &format!("scenario Day[0,{horizon}]"));
+    format!("{text}{objective}")
+}
+
+#[test]
+fn a_large_fleet_shares_its_sites_where_only_time_is_short() {
+    // Three sites for each rover: no other share fits.
+    let plan = first_plan(&network(&fleet_in_time(60, "")), Search::ConflictDirected);
+    assert_eq!(plan.plans.len(), 1);
+    assert!(plan.stats.conflicts < 1_000, "{:?}", plan.stats);
+}
+
+#[test]
+fn that_a_large_fleet_has_too_little_time_is_proven() {
+    let options = Options { explain: false, relax: false, ..Options::default() };
+    let answer = kirk::plan(&network(&fleet_in_time(59, "")), &options, &mut Unlimited);
+    assert_eq!(answer.status, Status::NoPlan);
+    assert!(answer.stats.conflicts < 100, "{:?}", answer.stats);
+}
+
+#[test]
+fn that_a_large_fleet_cannot_be_done_sooner_is_proven() {
+    let network = network(&fleet_in_time(400, " objective minimize end;"));
+    let answer = kirk::plan(&network, &Options::default(), &mut Unlimited);
+    let plan = &answer.plans[0];
+    let end = plan.windows[network.end.index()].map(|window| window.earliest);
+    assert_eq!((end, plan.quality.is_optimal), (Some(exact::Time::from(60)), Some(true)));
+    assert!(answer.stats.conflicts < 1_000, "{:?}", answer.stats);
+}
+
+/// One more than there are vehicles that can do one thing each.
+#[test]
+fn that_each_vehicle_has_room_for_one_is_proven() {
+    let names: Vec<String> = (0..=10).map(|site| format!("L{site}")).collect();
+    let sites: String = names.iter().map(|name| format!("location {name} (5, 5);\n")).collect();
+    let text = format!(
+        "location BASE (0, 0);\n{sites}group Sites = {};
+         model Scout extends ATRV {{ resource memory 0..1 = 0; }}
+         vehicle S[1..10] : Scout at BASE;
+         primitive Look(r, site)[10,15] produces r.memory 1;
+         scenario Day[0,1000] = {{ each site in Sites {{ any r in S {{ Look(r, site) }} }} }}",
+        names.join(", ")
+    );
+    let options = Options { explain: false, relax: false, ..Options::default() };
+    let answer = kirk::plan(&network(&text), &options, &mut Unlimited);
+    assert_eq!(answer.status, Status::NoPlan);
+    assert!(answer.stats.conflicts < 100, "{:?}", answer.stats);
+}

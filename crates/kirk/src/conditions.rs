@@ -137,6 +137,13 @@ impl Conditions {
             && (left.is_changing || right.is_changing || left.literal != right.literal)
     }
 
+    /// Whether no value of a variable that keeps its value is accepted by both of two requirements.
+    pub(crate) fn contradict(&self, left: LabelId, right: LabelId) -> bool {
+        let (left, right) = (&self.labels[left], &self.labels[right]);
+        let variable = &self.variables[left.variable];
+        left.variable == right.variable && variable.conflicts[variable.cell(left.literal, right.literal)]
+    }
+
     /// Whether a change gives its variable a value that requirement `ask` accepts.
     pub(crate) fn gives(&self, change: LabelId, ask: LabelId) -> bool {
         let (change, ask) = (&self.labels[change], &self.labels[ask]);

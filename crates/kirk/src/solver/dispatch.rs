@@ -153,6 +153,10 @@ impl Problem<'_> {
     pub(super) fn dispatch(&mut self, solver: &mut Solver) -> bool {
         let Some(mut dispatching) = self.dispatching.take() else { return false };
         if solver.stats.conflicts > dispatching.until {
+            // What dispatching tried last says little of what to try now.
+            solver.restart();
+            solver.record_restart(self);
+            self.prefer_short(solver);
             return false;
         }
         let mut has_decided = false;

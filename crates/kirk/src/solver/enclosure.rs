@@ -118,6 +118,9 @@ struct Inside<'a> {
 
 type Ends = (NodeId, NodeId);
 
+/// Least and greatest ones, of which one counts.
+type Durations = Vec<(i64, i64)>;
+
 impl<'a> Inside<'a> {
     fn new(
         mission: &'a Model,
@@ -197,7 +200,7 @@ impl<'a> Inside<'a> {
     }
 
     /// The ends of each open choice, and the durations that it may have. `None` if there are too many together.
-    fn durations_of_open_choices(&self) -> Option<Vec<(Ends, Vec<(i64, i64)>)>> {
+    fn durations_of_open_choices(&self) -> Option<Vec<(Ends, Durations)>> {
         let mut num_networks = 1;
         let mut open = Vec::with_capacity(self.within.open.len());
         for &decision in &self.within.open {

@@ -82,6 +82,8 @@ pub(crate) struct Problem<'m> {
     pub(super) ready: TiVec<LabelId, Variable>,
     pub(super) sides: Sides,
     pub(super) shares: Shares,
+    /// By state that is used much: what requires or changes it, of which no two overlap.
+    pub(super) turns: Vec<Vec<Interval>>,
     pub(super) instants: Instants,
     /// Times of another plan, by node, in whose order conflicting pairs are tried first.
     pub(crate) preferred_times: Vec<i64>,
@@ -130,6 +132,7 @@ impl<'m> Problem<'m> {
             ready: TiVec::new(),
             sides: Sides::default(),
             shares: Shares::default(),
+            turns: Vec::new(),
             instants: Instants::new(model),
             preferred_times: Vec::new(),
             dispatching: None,
@@ -151,6 +154,7 @@ impl<'m> Problem<'m> {
             problem.add_links(&mut solver, part, &mut growth)?;
             problem.add_lasting(&mut solver, part, &mut growth)?;
             problem.add_resources(&mut solver, part);
+            problem.limit_work(&mut solver, part);
             if problem.faces_nature {
                 // What the least times keep apart the environment's times may not.
                 problem.order_all_pairs(&mut solver, &mut growth)?;

@@ -90,17 +90,6 @@ impl Problem<'_> {
         }
     }
 
-    /// Tries first the alternatives that can be over first, such as leaving out what is optional: they are the likeliest to
-    /// fit where there is little time.
-    pub(crate) fn prefer_short(&self, solver: &mut Solver) {
-        let Some(structure) = &self.model.structure else { return };
-        for decision in self.model.decisions.keys() {
-            if let Some(alternative) = structure.shortest(decision) {
-                self.prefer_option(solver, decision, alternative as usize);
-            }
-        }
-    }
-
     /// Tries these links first.
     pub(crate) fn prefer_links(&self, solver: &mut Solver, choices: &Choices) {
         for (ask, options) in &self.carriers {
@@ -129,7 +118,7 @@ impl Problem<'_> {
         }
     }
 
-    fn prefer_option(&self, solver: &mut Solver, decision: DecisionId, option: usize) {
+    pub(super) fn prefer_option(&self, solver: &mut Solver, decision: DecisionId, option: usize) {
         let Some(literal) = self.alternatives[decision].get(option) else { return };
         for id in solver.choice_points_of.iter(literal.side.variable()) {
             let choice_point = &mut solver.choice_points[id];
@@ -140,7 +129,7 @@ impl Problem<'_> {
     }
 
     fn relaxation(&self, solver: &Solver, goal: &ModelGoal) -> Relaxation {
-        if self.shares.is_empty() {
+        if self.shares.is_empty() && self.turns.is_empty() {
             return Relaxation::default();
         }
         let terms: Vec<(i64, Variable)> = self
@@ -148,7 +137,7 @@ impl Problem<'_> {
             .into_iter()
             .filter_map(|(variable, weight)| Some((i64::try_from(weight).ok()?, variable)))
             .collect();
-        relaxation::relax(&solver.trail, &terms, &self.shares.tasks())
+        relaxation::relax(&solver.trail, &terms, &self.shares.tasks(), &self.turns)
     }
 
     /// The sums that a goal's is at least: its own, and with these rows at their prices.

@@ -21,7 +21,7 @@ struct Linear {
 pub(crate) enum LinearKind {
     /// It limits a goal.
     Goal,
-    /// It follows from what a reservoir has.
+    /// It follows from what reservoirs have, or from how much time there is.
     Amounts,
 }
 

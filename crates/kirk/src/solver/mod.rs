@@ -47,10 +47,12 @@ mod relaxation;
 mod resources;
 mod simplex;
 mod solution;
+mod spread;
 mod sweeps;
 mod touching;
 mod tours;
 mod trail;
+mod work;
 
 use tpn::LabelId;
 use typed_index_collections::TiVec;

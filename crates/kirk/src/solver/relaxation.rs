@@ -8,8 +8,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use num_integer::Integer as _;
 use rmpl::program::Change;
 
+use super::interval::Interval;
 use super::literal::{Literal, Variable};
 use super::resources::Task;
 use super::simplex::{self, Optimum};
@@ -47,9 +49,11 @@ pub(super) fn relax(
     trail: &Trail,
     terms: &[(i64, Variable)],
     supplies: &[(ModelSupply, Vec<Task>)],
+    turns: &[Vec<Interval>],
 ) -> Relaxation {
-    let shares: Vec<Share> =
-        supplies.iter().filter_map(|(supply, tasks)| Share::new(trail, *supply, tasks)).collect();
+    let of_resources = supplies.iter().filter_map(|(supply, tasks)| Share::new(trail, *supply, tasks));
+    let of_states = turns.iter().map(|turns| Share::taking_turns(trail, turns));
+    let shares: Vec<Share> = of_resources.chain(of_states).collect();
     let mut rows: Vec<Row> = supplies
         .iter()
         .flat_map(|(supply, tasks)| amounts(trail, *supply, tasks).into_iter().flatten())
@@ -118,6 +122,18 @@ impl Row {
         (row.most >= 0 && sum > i128::from(row.most)).then_some(row)
     }
 
+    /// The same divided by what all its weights have in common.
+    pub(super) fn rounded(self) -> Self {
+        let common = self.terms.values().fold(0, |common, &weight| weight.unsigned_abs().gcd(&common));
+        match i64::try_from(common) {
+            Ok(common) if common > 1 => Self {
+                terms: self.terms.into_iter().map(|(variable, weight)| (variable, weight / common)).collect(),
+                most: self.most.div_euclid(common),
+            },
+            _ => self,
+        }
+    }
+
     fn dense(&self, columns: &[Variable]) -> (Vec<f64>, f64) {
         let weight = |variable: &Variable| self.terms.get(variable).map_or(0.0, |&weight| weight as f64);
         (columns.iter().map(weight).collect(), self.most as f64)
@@ -163,6 +179,19 @@ struct Work {
 }
 
 impl Work {
+    /// `None` if it takes no time, or is not done.
+    fn new(trail: &Trail, interval: Interval, amount: i64) -> Option<Self> {
+        let variable = open_variable(trail, interval.presence);
+        let is_there = variable.is_some() || trail.holds(interval.presence);
+        (is_there && interval.duration > 0).then(|| Self {
+            variable,
+            earliest_start: trail.least(interval.start),
+            latest_end: trail.most(interval.end),
+            duration: interval.duration,
+            amount,
+        })
+    }
+
     /// How long it takes at least between two times.
     fn least_within(&self, from: i64, to: i64) -> i64 {
         let begun = self.earliest_start + self.duration - from;
@@ -174,19 +203,15 @@ impl Work {
 impl Share {
     fn new(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Option<Self> {
         let ModelSupply::Reusable { capacity } = supply else { return None };
-        let works =
-            tasks.iter().filter(|task| task.is_active && task.interval.duration > 0).filter_map(|task| {
-                let interval = task.interval;
-                let variable = open_variable(trail, interval.presence);
-                (variable.is_some() || trail.holds(interval.presence)).then(|| Work {
-                    variable,
-                    earliest_start: trail.least(interval.start),
-                    latest_end: trail.most(interval.end),
-                    duration: interval.duration,
-                    amount: task.amount,
-                })
-            });
+        let active = tasks.iter().filter(|task| task.is_active);
+        let works = active.filter_map(|task| Work::new(trail, task.interval, task.amount));
         Some(Self { capacity, works: works.collect() })
+    }
+
+    /// What takes turns shares one place.
+    fn taking_turns(trail: &Trail, turns: &[Interval]) -> Self {
+        let works = turns.iter().filter_map(|&interval| Work::new(trail, interval, 1));
+        Self { capacity: 1, works: works.collect() }
     }
 
     /// The times between which more work would be done than there is room for, the worst first, as rows.
@@ -221,7 +246,7 @@ impl Share {
                 None => row.most = row.most.checked_sub(taken)?,
             }
         }
-        (row.most >= 0).then_some(row)
+        (row.most >= 0).then(|| row.rounded())
     }
 }
 

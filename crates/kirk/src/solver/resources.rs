@@ -11,7 +11,7 @@ use tpn::{NodeId, UseId, UseOrdering};
 
 use super::dispatch::CROWD;
 use super::encode::{Part, Problem};
-use super::goals::{Sum, Weights};
+use super::goals::Weights;
 use super::instants::Instants;
 use super::interval::Interval;
 use super::linear::LinearKind;
@@ -139,7 +139,7 @@ impl Shares {
 
 impl Problem<'_> {
     pub(super) fn add_resources(&mut self, solver: &mut Solver, part: Part<'_>) {
-        let mut taken = Taken::default();
+        let [mut taken, mut given] = [const { Taken::new() }; 2];
         for resource in &self.model.demands.resources {
             // Where the environment chooses, the level counts also where nothing is taken or given (SPEC 11).
             let counts =
@@ -161,8 +161,13 @@ impl Problem<'_> {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
             };
             let tasks: Vec<Task> = tasks.filter(exists).collect();
-            if tasks.len() >= MANY_USES && !solver.takes_nothing_for_granted() {
-                taken.add(sum_up(solver, resource.supply, &tasks));
+            if !solver.takes_nothing_for_granted() {
+                let [consumed, produced] = relaxation::amounts(&solver.trail, resource.supply, &tasks);
+                if tasks.len() >= MANY_USES {
+                    sum_up(solver, [&consumed, &produced]);
+                }
+                taken.add(consumed);
+                given.add(produced);
             }
             self.shares.all.push(Shared {
                 supply: resource.supply,
@@ -171,15 +176,8 @@ impl Problem<'_> {
                 is_crowded: false,
             });
         }
-        if taken.num_reservoirs > 1
-            && let Some(Sum { terms, constant, .. }) = self.charged(solver, taken.weights, 0, 1)
-            && let Ok(most) = i64::try_from(taken.most - i128::from(constant))
-        {
-            if !terms.is_empty() {
-                solver.linears.add(terms, most, LinearKind::Amounts);
-            } else if most < 0 {
-                solver.at_least_one([]);
-            }
+        for all in [taken, given].into_iter().filter(|all| all.num_reservoirs > 1) {
+            self.limit(solver, all.weights, all.most);
         }
     }
 
@@ -370,20 +368,16 @@ impl Problem<'_> {
 
 /// Tells the solver that in all no more is taken of a reservoir than it has and is given, and no more given than it has
 /// room for. That says for all sets of uses what one solution after the other would say for few of them; it does not say
-/// which ones, so that explanations do without it. Returns the sum of what is taken.
-fn sum_up(solver: &mut Solver, supply: ModelSupply, tasks: &[Task]) -> Option<Row> {
-    let rows = relaxation::amounts(&solver.trail, supply, tasks);
-    for row in rows.iter().flatten() {
+/// which ones, so that explanations do without it.
+fn sum_up(solver: &mut Solver, rows: [&Option<Row>; 2]) {
+    for row in rows.into_iter().flatten() {
         let terms = row.terms.iter().map(|(&variable, &weight)| (weight, variable)).collect();
         solver.linears.add(terms, row.most, LinearKind::Amounts);
     }
-    let [taken, _] = rows;
-    taken
 }
 
-/// What is taken of all reservoirs together: where each alternative of a choice takes something of one of them, all of them
-/// may be too little although none of them is (the pigeonhole principle).
-#[derive(Default)]
+/// What is taken of all reservoirs together, or given to them: where each alternative of a choice takes something of one of
+/// them, all of them may be too little although none of them is (the pigeonhole principle).
 struct Taken {
     weights: Weights,
     most: i128,
@@ -391,6 +385,10 @@ struct Taken {
 }
 
 impl Taken {
+    const fn new() -> Self {
+        Self { weights: Weights::new(), most: 0, num_reservoirs: 0 }
+    }
+
     fn add(&mut self, row: Option<Row>) {
         let Some(row) = row else { return };
         self.num_reservoirs += 1;

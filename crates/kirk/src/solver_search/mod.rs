@@ -542,6 +542,9 @@ impl<'a> Searching<'a> {
             },
         };
         let is_first = self.incumbent.is_none();
+        if is_first {
+            attempt.problem.prefer_spread(&mut attempt.solver);
+        }
         if is_first && self.model.demands.goals.first().is_some_and(|goal| goal.per_tick > 0) {
             attempt.problem.begin_dispatch(&mut attempt.solver);
         }

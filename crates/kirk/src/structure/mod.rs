@@ -159,16 +159,18 @@ impl Structure {
         (from, to, self.initial[block].lower, self.initial[block].upper())
     }
 
-    /// The alternative of a choice that can be over first: of several the one that must be over first, then the one with the
-    /// fewest parts, then the first.
-    pub(crate) fn shortest(&self, decision: DecisionId) -> Option<u32> {
+    /// The alternatives of a choice that can be over first: of several those that must be over first, then those with the
+    /// fewest parts.
+    pub(crate) fn shortest(&self, decision: DecisionId) -> Vec<u32> {
         let alternatives = (0..).zip(self.children(self.decision_blocks[decision]));
         let lasts = alternatives.filter_map(|(alternative, &child)| {
             let inside = self.initial[child];
             let duration = self.with_around(inside, child).ok().filter(|_| !inside.is_empty())?;
-            Some((duration.lower, duration.upper(), self.children(child).len(), alternative))
+            Some(((duration.lower, duration.upper(), self.children(child).len()), alternative))
         });
-        lasts.min().map(|(.., alternative)| alternative)
+        let lasts: Vec<_> = lasts.collect();
+        let least = lasts.iter().map(|&(last, _)| last).min();
+        lasts.into_iter().filter(|&(last, _)| Some(last) == least).map(|(_, it)| it).collect()
     }
 
     /// Least and greatest durations of which a choice has one, whichever alternatives are taken in it: one interval where
