@@ -125,7 +125,11 @@ fn kind_of_other(document: &Value) -> Option<&'static str> {
     if geojson::is_geojson(document) {
         return Some("GeoJSON; use `enroute import`");
     }
-    if ["spans", "resources", "realProfiles", "simulationEvents"].iter().filter(|key| has(key)).count() > 1
+    let of_simulation =
+        ["spans", "resources", "realProfiles", "discreteProfiles", "profiles", "simulationEvents"];
+    let is_list_of_spans = document.get("spans").is_some_and(Value::is_array);
+    if of_simulation.iter().filter(|key| has(key)).count() > 1
+        || is_list_of_spans
         || has("simulation_dataset_id")
     {
         return Some("the result of a simulation in PlanDev (Aerie), not a plan; export the plan");
@@ -144,6 +148,19 @@ fn kind_of_other(document: &Value) -> Option<&'static str> {
     if has("$schema") && has("properties") {
         return Some("a JSON Schema, not a network");
     }
+    if document.get("type").and_then(Value::as_str) == Some("Topology") {
+        return Some("TopoJSON; convert it to GeoJSON, then use `enroute import`");
+    }
+    if has("nbformat") && has("cells") {
+        return Some("a Jupyter notebook, not a network");
+    }
+    let first = document.as_array().and_then(|packets| packets.first());
+    if first.and_then(|packet| packet.get("id")).and_then(Value::as_str) == Some("document") {
+        return Some("CZML, a scene of Cesium, not a network");
+    }
+    if has("steps") && (has("metadata") || has("id")) {
+        return Some("a sequence of commands (SeqJSON), not a plan; export the plan");
+    }
     None
 }
 
@@ -157,6 +174,12 @@ mod tests {
             (r#"{"Group": [{"name": "a", "start": 1, "end": 2, "type": "g"}]}"#, "a plan of Open MCT"),
             (r#"{"openmct": {}, "rootId": "x"}"#, "Open MCT objects"),
             (r#"{"spans": [], "resources": {}}"#, "simulation in PlanDev"),
+            (r#"{"realProfiles": {}, "discreteProfiles": {}}"#, "simulation in PlanDev"),
+            (r#"{"spans": []}"#, "simulation in PlanDev"),
+            (r#"{"type": "Topology", "objects": {}}"#, "TopoJSON"),
+            (r#"{"cells": [], "nbformat": 4}"#, "notebook"),
+            (r#"[{"id": "document", "version": "1.0"}]"#, "CZML"),
+            (r#"{"id": "s1", "metadata": {}, "steps": []}"#, "SeqJSON"),
             (r#"{"type": "Point", "coordinates": [1, 2]}"#, "GeoJSON"),
             (r#"{"format": "enroute-plan/1", "plans": []}"#, "a plan that Enroute wrote"),
             (r#"{"format": "enroute-path/1"}"#, "a document of Enroute"),

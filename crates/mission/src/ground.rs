@@ -73,6 +73,8 @@ const ROOM_M: [f64; 2] = [1.5, 0.5];
 struct Imported {
     version: [u8; 32],
     map: Terrain,
+    /// Cells whose gray level means neither free nor occupied.
+    num_unclear: usize,
 }
 
 #[derive(Clone, PartialEq)]
@@ -85,12 +87,14 @@ struct SpaceKey {
 impl Grounds {
     /// Reads a map file so that `terrain "name"` finds it, and answers the map; says why when it can't be read.
     pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<&Terrain, String> {
-        let map = terrain::format::read_terrain(bytes, &ImportOptions::default())
+        let raster = terrain::format::read_raster(bytes, &ImportOptions::default())
             .map_err(|error| error.to_string())?;
+        let num_unclear = raster.num_unclear;
+        let map = raster.into_terrain();
         let version = Sha256::digest(bytes).into();
         self.maps.retain(|key, _| key.asset != name);
         let name = SmolStr::new(name);
-        self.imported.insert(name.clone(), Imported { version, map });
+        self.imported.insert(name.clone(), Imported { version, map, num_unclear });
         self.imported.get(&name).map(|imported| &imported.map).ok_or_else(String::new)
     }
 
@@ -128,6 +132,20 @@ impl Grounds {
         self.maps.retain(|other, _| other.asset == key.asset);
         self.maps.insert(key.clone(), Arc::clone(&map));
         (Some((key, map)), Vec::new())
+    }
+
+    /// That the map of a mission has gray levels between free and occupied, if it does.
+    pub(crate) fn unclear_cells(&self, program: &Program) -> Option<Diagnostic> {
+        let declared = program.world.terrain.as_ref()?;
+        let imported = self.imported.get(&declared.asset).filter(|imported| imported.num_unclear > 0)?;
+        let (unclear, frame) = (imported.num_unclear, imported.map.frame());
+        let all = u64::from(frame.width) * u64::from(frame.height);
+        let message = format!(
+            "{unclear} of {all} cells of \"{}\" have a gray value between its thresholds: they are unknown, and no path crosses them",
+            declared.asset
+        );
+        let hint = "change `free_thresh` or `occupied_thresh` in the file, or use 205 for unknown cells";
+        Some(Diagnostic::warning(rmpl::diagnostics::map::CODE, declared.asset_span, message).with_hint(hint))
     }
 
     /// The free space of vehicles of `model` among `obstacles`.

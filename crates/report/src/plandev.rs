@@ -41,10 +41,10 @@ pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
                 "enroute_content_hash": about.content_hash,
                 "enroute_plan_status": about.status_in_words(),
             },
-            "name": occurrence.name,
+            "name": directive_name(occurrence),
             "start_offset": interval(row.start.earliest, unit)?,
             "tags": [],
-            "type": directive_type(occurrence),
+            "type": said_type(occurrence).unwrap_or(&occurrence.activity),
         }));
     }
     let end = plan.windows.get(network.end.index())?.as_ref()?.earliest;
@@ -62,10 +62,15 @@ pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
     }))
 }
 
-/// The type that a plan of `PlanDev` said before, or what the activity is called.
-fn directive_type(occurrence: &Occurrence) -> &str {
+/// The name that a plan of `PlanDev` said before, which need not be the only one of its kind, or what the occurrence is called.
+fn directive_name(occurrence: &Occurrence) -> &str {
+    if said_type(occurrence).is_some() { &occurrence.activity } else { &occurrence.name }
+}
+
+/// The type that a plan of `PlanDev` said before.
+fn said_type(occurrence: &Occurrence) -> Option<&str> {
     let mut said = occurrence.arguments.iter().filter_map(|argument| argument.split_once('='));
-    said.find(|(name, _)| *name == DIRECTIVE_TYPE).map_or(occurrence.activity.as_str(), |(_, kind)| kind)
+    said.find(|(name, _)| *name == DIRECTIVE_TYPE).map(|(_, kind)| kind)
 }
 
 /// By name: what a plan of `PlanDev` said before, `name=value`, or what the mission calls it.

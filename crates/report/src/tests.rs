@@ -354,7 +354,7 @@ fn key(name: &str) -> SecretKey {
 /// A record of a board of people whose keys are trusted.
 fn judged() -> Record {
     let mut ring = KeyRing::default();
-    for name in ["Ada <A>", "Grace"] {
+    for name in ["Ada & Co", "Grace"] {
         ring.add(Person::new(name, key(name))).expect("a name of its own");
     }
     let mut record = Record::default();
@@ -377,45 +377,42 @@ fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     assert!(page_with(&planned, &record).contains("draft</span>: Reviewer 0 of 1"));
     let about = Some("Group-Wait#1".to_owned());
     let text = "Long wait.\nIs that <intended>?".to_owned();
-    let to = Some(key("Ada <A>").public());
+    let to = Some(key("Ada & Co").public());
     record.add(who("Grace", &planned.review), Act::Comment { about, to, text }, &key("Grace"));
     let asked = record.entries()[0].digest().to_owned();
     let page = page_with(&planned, &record);
     assert!(page.contains("in review</span>") && page.contains("<h3>Open comments</h3>"));
     assert!(page.contains("Long wait.<br>Is that &lt;intended&gt;?") && page.contains("1 comment is open"));
     let resolve = Act::Resolve { of: asked, text: "Yes.".to_owned() };
-    record.add(who("Ada <A>", &planned.review), resolve, &key("Ada <A>"));
+    record.add(who("Ada & Co", &planned.review), resolve, &key("Ada & Co"));
     for section in Section::ALL {
         for line in planned.review.lines(section) {
             let line = LineKey::new(section, line);
             record.add(
-                who("Ada <A>", &planned.review),
+                who("Ada & Co", &planned.review),
                 Act::Acknowledge { line, text: "As meant.".to_owned() },
-                &key("Ada <A>"),
+                &key("Ada & Co"),
             );
         }
     }
     let relied_on = standing(&record, &Present::of_review(&planned.review)).relied_on;
-    let ada = who("Ada <A>", &planned.review);
-    record.approve(ada, subject(&planned), "Mind the wind.".to_owned(), relied_on, &key("Ada <A>"));
+    let ada = who("Ada & Co", &planned.review);
+    record.approve(ada, subject(&planned), "Mind the wind.".to_owned(), relied_on, &key("Ada & Co"));
     let page = page_with(&planned, &record);
     assert!(page.contains("approved with comments</span>: Reviewer 1 of 1"), "{page}");
-    assert!(page.contains("Ada &lt;A&gt; (Reviewer): As meant."), "who acknowledged stands in the summary");
+    assert!(page.contains("Ada &amp; Co (Reviewer): As meant."), "who acknowledged stands in the summary");
     assert!(page.contains("resolved entry 1") && page.contains("Mind the wind."));
     assert!(page.contains("Text, plan, checklist, flight rules and Monte Carlo results are unchanged."));
     assert!(page.contains(record.heads().next().expect("a last entry")));
     let approved = record.entries().last().expect("the approval").digest().to_owned();
     let withdraw = Act::Withdraw { of: approved, text: "Too early.".to_owned() };
-    record.add(who("Ada <A>", &planned.review), withdraw.clone(), &key("Grace"));
+    record.add(who("Ada & Co", &planned.review), withdraw.clone(), &key("Grace"));
     let page = page_with(&planned, &record);
     assert!(page.contains("approved with comments"), "the key is Grace's");
-    assert!(
-        page.contains("valid: the key is that of “Grace”, and the entry names “Ada &lt;A&gt;”"),
-        "{page}"
-    );
-    record.add(who("Ada <A>", &planned.review), withdraw, &key("Ada <A>"));
+    assert!(page.contains("valid: the key is that of “Grace”, and the entry names “Ada &amp; Co”"), "{page}");
+    record.add(who("Ada & Co", &planned.review), withdraw, &key("Ada & Co"));
     let page = page_with(&planned, &record);
-    assert!(page.contains("withdrawn by Ada &lt;A&gt;") && !page.contains("approved with comments"));
+    assert!(page.contains("withdrawn by Ada &amp; Co") && !page.contains("approved with comments"));
 }
 
 #[test]
@@ -423,11 +420,11 @@ fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs(
     let before = planned("primitive A()[1,2]; scenario S[0,9] = { A() }");
     let after = planned("primitive A()[3,4]; scenario S[0,9] = { A() }");
     let mut record = judged();
-    let ada = who("Ada <A>", &before.review);
-    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada <A>"));
+    let ada = who("Ada & Co", &before.review);
+    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada & Co"));
     assert!(page_with(&before, &record).contains("approved</span>: Reviewer 1 of 1"));
     let page = page_with(&after, &record);
-    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada &lt;A&gt; approved 2026-01-02 03:04 UTC: the text, map, goal or seed has changed";
+    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada &amp; Co approved 2026-01-02 03:04 UTC: the text, map, goal or seed has changed";
     assert!(page.contains(lapsed), "{page}");
     assert!(page.contains("<del>− primitive A()[1,2]; scenario S[0,9] = { A() }</del>"));
     assert!(page.contains("<ins>+ primitive A()[3,4]; scenario S[0,9] = { A() }</ins>"));
@@ -439,8 +436,8 @@ fn a_report_draws_the_network_over_the_approved_one() {
     let before = planned("primitive A()[1,2]; primitive B()[1,1]; scenario S[0,9] = { A(); B() }");
     let after = planned("primitive A()[2,3]; primitive C()[4,4]; scenario S[0,9] = { A(); C() }");
     let mut record = judged();
-    let ada = who("Ada <A>", &before.review);
-    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada <A>"));
+    let ada = who("Ada & Co", &before.review);
+    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada & Co"));
     assert!(!page_with(&before, &record).contains("over the approved one"), "nothing differs");
     let page = page_with(&after, &record);
     let drawing = page.split("Network of the plan over the approved one").nth(1).expect("the drawing");

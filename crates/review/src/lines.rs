@@ -12,7 +12,7 @@ use tpn::{ArcKind, Network, NodeId, OccurrenceId};
 
 use super::demand_lines::status_by_checker;
 use super::late_drives::late_drives;
-use super::place::find_places;
+use super::place::{ASSUMES, find_places};
 use super::plan_lines::{CLOSED, LATE, PlanLines, short_of_its_goal_m};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
@@ -153,9 +153,6 @@ pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
 
 /// How the line of a strongly controllable plan begins.
 pub(crate) const STRONG: &str = "strongly controllable: ";
-
-/// How the lines begin of what the world would have to do as it suits the plan.
-pub(super) const ASSUMES: &str = "assumes favorable ";
 
 /// What keeps a plan from being executed as it says.
 #[derive(Clone, Copy)]

@@ -11,8 +11,10 @@ use snapshot::Snapshot;
 use tpn::{ArcKind, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 use super::hash::sha256;
-use super::lines::ASSUMES;
 use super::{Line, Review};
+
+/// How the lines begin of what the world would have to do as it suits the plan.
+pub(super) const ASSUMES: &str = "assumes favorable ";
 
 /// Longer places are known by their digest.
 const MAX_PLACE_BYTES: usize = 400;

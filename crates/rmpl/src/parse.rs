@@ -75,6 +75,17 @@ impl Place {
     }
 }
 
+/// A declaration that has just been read.
+struct Fresh {
+    start: u32,
+    declaration: Arc<Declaration>,
+    /// What it declares, of the first [`MAX_ITEMS`].
+    item: Option<Item>,
+}
+
+/// So many declarations are kept from reading them to checking them.
+const MAX_ITEMS: usize = 64;
+
 /// What is known of one declaration whatever the rest of the file says; offsets are relative to its first byte.
 #[derive(Debug)]
 pub(crate) struct Declaration {
@@ -100,7 +111,7 @@ impl Parse {
         let mut parse = Self { text, ..Self::default() };
         let fresh = parse.read_declarations(0, |_, _| false);
         let checked = Arc::new(Checked::default());
-        let place = |(start, declaration)| Place {
+        let place = |Fresh { start, declaration, .. }| Place {
             start,
             key: parse.index.new_key(),
             declaration,
@@ -152,7 +163,7 @@ impl Parse {
             old.get(resume).is_some_and(|place| place.start == old_start)
         });
         // Everything was parsed to the end of the text unless the parser met an old boundary.
-        let met = fresh.last().map_or(from, |(start, declaration)| start + declaration.tree.len());
+        let met = fresh.last().map_or(from, |last| last.start + last.declaration.tree.len());
         if met as usize == self.text.len() {
             resume = self.places.len();
         }
@@ -163,12 +174,8 @@ impl Parse {
     }
 
     /// Parses declarations from `start` on, until `meets` accepts the start of the next one or the text ends.
-    fn read_declarations(
-        &mut self,
-        start: u32,
-        mut meets: impl FnMut(&[Place], u32) -> bool,
-    ) -> Vec<(u32, Arc<Declaration>)> {
-        let mut found = Vec::new();
+    fn read_declarations(&mut self, start: u32, mut meets: impl FnMut(&[Place], u32) -> bool) -> Vec<Fresh> {
+        let mut found: Vec<Fresh> = Vec::new();
         let mut scratch = Scratch::default();
         let (mut at, mut file_end) = (start, 0);
         while (at as usize) < self.text.len() && !meets(&self.places, at) {
@@ -176,9 +183,10 @@ impl Parse {
                 file_end = self.end_of_file(at);
             }
             let rest = self.text.get(at as usize..file_end).unwrap_or("");
-            let declaration = Declaration::read(rest, &mut scratch, &mut self.names);
+            let (declaration, item) = Declaration::read(rest, &mut scratch, &mut self.names);
             let length = declaration.tree.len().max(1);
-            found.push((at, Arc::new(declaration)));
+            let item = item.filter(|_| found.len() < MAX_ITEMS);
+            found.push(Fresh { start: at, declaration: Arc::new(declaration), item });
             self.declarations_read += 1;
             at += length;
         }
@@ -193,19 +201,17 @@ impl Parse {
     }
 
     /// Puts fresh declarations in place of old ones and brings the diagnostics of the whole file up to date.
-    fn exchange(&mut self, old: Range<usize>, fresh: Vec<(u32, Arc<Declaration>)>) {
+    fn exchange(&mut self, old: Range<usize>, fresh: Vec<Fresh>) {
         let removed: Vec<Place> = self.places.get(old.clone()).unwrap_or_default().to_vec();
         let mut keys: Vec<DeclarationKey> = removed.iter().rev().map(|place| place.key).collect();
         let unchecked = Arc::new(Checked::default());
-        let fresh: Vec<Place> = fresh
+        let (fresh, items): (Vec<Place>, Vec<Option<Item>>) = fresh
             .into_iter()
-            .map(|(start, declaration)| Place {
-                start,
-                key: keys.pop().unwrap_or_else(|| self.index.new_key()),
-                declaration,
-                checked: Arc::clone(&unchecked),
+            .map(|Fresh { start, declaration, item }| {
+                let key = keys.pop().unwrap_or_else(|| self.index.new_key());
+                (Place { start, key, declaration, checked: Arc::clone(&unchecked) }, item)
             })
-            .collect();
+            .unzip();
         let summaries = |place: &Place| (place.key, Arc::clone(&place.declaration));
         let (before, after): (Vec<_>, Vec<_>) =
             (removed.iter().map(summaries).collect(), fresh.iter().map(summaries).collect());
@@ -218,10 +224,11 @@ impl Parse {
         let changed = old.start..old.start + fresh.len();
         self.places.splice(old, fresh);
         self.index.find_rivals(self.places.iter().map(|place| place.key));
-        self.check_again(&changed);
+        self.check_again(&changed, items);
     }
 
-    fn check_again(&mut self, changed: &Range<usize>) {
+    /// Checks what has changed, of which some items are at hand, and all that the change concerns.
+    fn check_again(&mut self, changed: &Range<usize>, mut items: Vec<Option<Item>>) {
         let may_concern_others = self.index.has_changed();
         for (position, place) in self.places.iter_mut().enumerate() {
             let checked = &place.checked;
@@ -230,10 +237,12 @@ impl Parse {
                 || (may_concern_others
                     && self.index.is_stale(&declaration.summary, checked.revision, checked.depends_on_names));
             if is_stale {
+                let at_hand =
+                    position.checked_sub(changed.start).and_then(|fresh| items.get_mut(fresh)?.take());
                 place.checked = Arc::new(check(
                     place.key,
                     &declaration.summary,
-                    place.item(&self.text).as_ref(),
+                    at_hand.or_else(|| place.item(&self.text)).as_ref(),
                     declaration.is_sound,
                     &self.names,
                     &self.index,
@@ -443,8 +452,8 @@ fn add(program: &mut Program, item: Item) {
 }
 
 impl Declaration {
-    /// Reads the declaration at the start of `text`.
-    fn read(text: &str, scratch: &mut Scratch, names: &mut Names) -> Self {
+    /// Reads the declaration at the start of `text`, and what it declares.
+    fn read(text: &str, scratch: &mut Scratch, names: &mut Names) -> (Self, Option<Item>) {
         let parsed = parse_declaration(text, scratch);
         let root = parsed.tree.root(text.get(..parsed.tree.len() as usize).unwrap_or(""), 0);
         let mut lowering = Lowering::new(&|_| false);
@@ -462,7 +471,7 @@ impl Declaration {
         diagnostics.retain(|found| known.is_new(found));
         diagnostics.shrink_to_fit();
         let summary = summarize(item.as_ref(), &lowering.bare_names, names);
-        Self { tree: parsed.tree, diagnostics, summary, is_sound, reach: parsed.reach }
+        (Self { tree: parsed.tree, diagnostics, summary, is_sound, reach: parsed.reach }, item)
     }
 }
 

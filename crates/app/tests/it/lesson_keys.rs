@@ -225,6 +225,14 @@ fn the_hitting_set_tree_is_a_tree_and_is_built_with_keys() {
         };
         items.map(|it| (it.label().unwrap_or_default(), it.level().expect("a level"), place(&it))).collect()
     };
+    // The drawing says which component is part of which conflict.
+    let of_component: Vec<String> = app
+        .harness
+        .query_all_by_label_contains("conflict ")
+        .filter_map(|node| node.accesskit_node().label().or_else(|| node.accesskit_node().value()))
+        .filter(|text| text.starts_with("conflict "))
+        .collect();
+    assert!(of_component.iter().any(|text| text == "conflict 1, 2"), "{of_component:?}");
     button(&mut app, "Build hitting-set tree");
     assert_eq!(items(&app), [("all assumed: open".to_owned(), 1, [0, 1])]);
     button(&mut app, "Diagnosis: all assumed");

@@ -459,13 +459,13 @@ fn the_review_fits_into_a_narrow_panel() {
 #[test]
 fn the_report_is_written_with_the_review_that_is_shown() {
     let mut app = reviewing();
-    approve(&mut app, "Ada <A>");
+    approve(&mut app, "Ada & Co");
     click(&mut app, "Write report");
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file");
     assert_eq!(name, "enroute.report.html");
     let page = String::from_utf8(bytes).expect("UTF-8");
     assert!(page.contains(review(&app)["hash"].as_str().expect("a hash")));
-    assert!(page.contains("Ada &lt;A&gt;"));
+    assert!(page.contains("Ada &amp; Co"));
     assert!(page.contains("<svg") && page.contains("Group-Traverse-Path(PATH1_1, …, TAI_POS)"));
 }
 

@@ -54,7 +54,10 @@ pub fn import_jmpl(file: &Path, text: String, more: &[PathBuf], format: Format) 
         collect(folder, true, &mut found);
     }
     for path in found.iter().filter(|path| !given.contains(path)) {
-        library.push(source(path)?);
+        match source(path) {
+            Ok(file) => library.push(file),
+            Err(error) => print_error(&format!("not read: {error:#}")),
+        }
     }
     let read = jmpl::translate(&files, &library).context("cannot read the model")?;
     print(&read, file, format)
@@ -81,6 +84,7 @@ fn collect(folder: &Path, is_deep: bool, found: &mut Vec<PathBuf>) {
         if path.is_dir() && !path.is_symlink() && is_deep {
             collect(&path, true, found);
         } else if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("jmpl"))
+            && path.is_file()
             && !found.contains(&path)
         {
             found.push(path);

@@ -20,7 +20,9 @@ use crate::deadline::TimeLimit;
 use crate::ground::{LARGEST_MAP_BYTES, with_label};
 use crate::input::{folder_of, read_bytes};
 use crate::number::{number_in, positive_number, seed};
-use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text, without_timings};
+use crate::output::{
+    Format, LIMIT, NO, YES, document, exit, print_error, print_json, print_text, without_timings,
+};
 
 /// Find a path on a map of obstacles.
 #[derive(clap::Args)]
@@ -171,6 +173,12 @@ fn load(args: &Args) -> anyhow::Result<Map> {
     );
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
+    if raster.num_unclear > 0 {
+        print_error(&format!(
+            "note: {} cells of {name} have a gray value between its thresholds: they are unknown, and no path crosses them",
+            raster.num_unclear
+        ));
+    }
     let frame = GridFrame::new(raster.width, raster.height, args.cell);
     if let Some(step) = args.step {
         let least = args.cell * MIN_STEP_CELLS;

@@ -83,13 +83,28 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(NO));
     };
     let Ran { outcome, drives, .. } = outcome?;
+    let save_state = || -> anyhow::Result<()> {
+        let Some(file) = &args.state else { return Ok(()) };
+        let saved = SavedState::at_end(&outcome, &drives, &evaluated.compiled.program);
+        let saved = saved.map_err(|reason| {
+            anyhow::anyhow!(
+                "cannot write a state to {}: {}",
+                file.display(),
+                evaluated.network.readable(&reason)
+            )
+        })?;
+        save(file, &format!("{}\n", serde_json::to_string_pretty(&saved)?))
+    };
     let drive = |drive| drive_json(drive, &evaluated.network, &evaluated.compiled.program);
     match args.options.format {
         Format::Text => {
             let log: String = outcome.log.iter().map(line).collect();
             print_text(&evaluated.network.readable(&log))?;
+            save_state()?;
         }
         Format::Json => {
+            // That a state cannot be written is the only document then.
+            save_state()?;
             let mut body = json!({
                 "status": outcome.ending,
                 "seed": args.options.seed,
@@ -101,17 +116,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
             print_json(&document("simulate", &problems, body))?;
         }
-    }
-    if let Some(file) = &args.state {
-        let saved = SavedState::at_end(&outcome, &drives, &evaluated.compiled.program);
-        let saved = saved.map_err(|reason| {
-            anyhow::anyhow!(
-                "cannot write a state to {}: {}",
-                file.display(),
-                evaluated.network.readable(&reason)
-            )
-        })?;
-        save(file, &format!("{}\n", serde_json::to_string_pretty(&saved)?))?;
     }
     Ok(exit(if outcome.ending == Ending::Finished { YES } else { NO }))
 }

@@ -196,6 +196,14 @@ fn a_map_of_ros_is_read_with_its_image_from_the_folder_of_the_mission() {
     ]);
     assert_eq!(path.status.code(), Some(0), "{path:?}");
 
+    // A gray value that is neither free nor occupied may be a mistake; 205 is not.
+    assert!(!answer(&around)["diagnostics"].to_string().contains("W-MAP"), "{around:?}");
+    let gray: Vec<u8> = image.iter().map(|&level| if level == 205 { 128 } else { level }).collect();
+    std::fs::write(folder.join("maps/yard.pgm"), [b"P5 60 60 255\n", gray.as_slice()].concat())
+        .expect("written");
+    let told = answer(&plan("14, 16"))["diagnostics"].to_string();
+    assert!(told.contains("W-MAP") && told.contains("240 of 3600 cells"), "{told}");
+
     // An image that is elsewhere is not an image of the mission.
     std::fs::write(folder.join("maps/yard.yaml"), yaml.replace("yard.pgm", "../../../etc/passwd"))
         .expect("written");

@@ -129,3 +129,22 @@ fn plans_that_cannot_be_read_say_which_directive_is_at_fault() {
     let output = enroute(&["plan", late.to_str().expect("a path")]);
     assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stdout));
 }
+
+#[test]
+fn names_of_directives_survive_however_often_a_plan_is_written() {
+    let named = |id: i64, name: &str| {
+        let mut directive = directive(id, "Bake", &format!("0{id}:00:00"), None, true);
+        directive["name"] = json!(name);
+        directive
+    };
+    let activities = [named(1, "First"), named(2, "Twice"), named(3, "Twice")];
+    let mut file = written("names-0.json", &plan(&activities).to_string());
+    for round in 1..=2 {
+        let path = file.to_str().expect("a path");
+        let again = told(&enroute(&["export", path, "--as", "plandev", "--epoch", "2024-08-02T00:00:00Z"]));
+        let names = again["activities"].as_array().expect("directives").iter();
+        let names: Vec<&str> = names.filter_map(|directive| directive["name"].as_str()).collect();
+        assert_eq!(names, ["First", "Twice", "Twice"], "round {round}");
+        file = written(&format!("names-{round}.json"), &again.to_string());
+    }
+}

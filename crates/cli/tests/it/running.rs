@@ -241,6 +241,16 @@ fn a_state_that_a_run_ends_in_is_the_start_of_the_next_plan() {
 }
 
 #[test]
+fn a_state_that_cannot_be_written_is_one_document() {
+    let today = sol("unwritten.rmpl", "Drive(R, ROCK)");
+    let nowhere = format!("{}/none/state.json", env!("CARGO_TARGET_TMPDIR"));
+    let run = enroute(&["simulate", &today, "--state", &nowhere, "--format", "json"]);
+    assert_eq!(run.status.code(), Some(2));
+    let document: Value = serde_json::from_slice(&run.stdout).expect("one document");
+    assert!(document["diagnostics"].to_string().contains("state.json"), "{document}");
+}
+
+#[test]
 fn no_state_is_written_while_an_activity_is_under_way() {
     let mission = file(
         "under-way.rmpl",

@@ -15,6 +15,9 @@ use tpn::network::{
 };
 use tpn::vocabulary::Vocabulary;
 
+/// So many members of a document are named when it is refused.
+const MAX_MEMBERS: usize = 6;
+
 /// Reads the network that `network-id` names.
 pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaError> {
     let read = with_known_types(&objects);
@@ -117,10 +120,19 @@ impl<'file> Reader<'file> {
         let missing = || {
             let problem = if self.objects.values().any(is_hierarchical) {
                 "hierarchical task networks (HTN) are not supported; open the plan network, usually named `.tpn.json`"
+                    .to_owned()
+            } else if self.objects.is_empty() {
+                "the document is empty".to_owned()
             } else {
-                "the file needs a `network-id` or a network object"
+                let members: Vec<String> =
+                    self.objects.keys().take(MAX_MEMBERS).map(|key| format!("`{key}`")).collect();
+                let more = if self.objects.len() > MAX_MEMBERS { ", …" } else { "" };
+                format!(
+                    "the file needs a `network-id` or a network object; it has {}{more}",
+                    members.join(", ")
+                )
             };
-            PlanSchemaError::Shape(problem.to_owned())
+            PlanSchemaError::Shape(problem)
         };
         named.map(|(uid, _)| uid.clone()).ok_or_else(missing)
     }

@@ -178,6 +178,7 @@ impl Core {
             return (planning::without_paths(network, outcome), !enough.get());
         }
         let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        planned.warnings.extend(self.grounds.unclear_cells(&compiled.program));
         let outcome = &planned.planning.outcome;
         let is_proven = |plan: &Plan| plan.quality.is_optimal == Some(true);
         let is_decided = outcome.status == Status::NoPlan || outcome.plans.first().is_some_and(is_proven);

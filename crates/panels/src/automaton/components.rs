@@ -107,7 +107,8 @@ impl Machines {
     ) {
         let tokens = context.tokens;
         let standing = Standing::new(context, &self.model, plant, id);
-        let outline = match (standing.injected, standing.is_right()) {
+        let conflicts = conflicts_with(plant, id);
+        let outline = match (standing.injected, standing.is_right() && conflicts.is_empty()) {
             (Some(_), _) => tokens.error,
             (None, true) => tokens.line,
             (None, false) => tokens.warning,
@@ -130,6 +131,10 @@ impl Machines {
                     || (class.to_owned(), tokens.text_faint),
                     |mode| (format!("→ {}", self.model.mode_name(id, mode)), tokens.error),
                 );
+                if !conflicts.is_empty() {
+                    let text = format!("conflict {}", conflicts.join(", "));
+                    ui.label(RichText::new(text).small().color(tokens.warning));
+                }
                 ui.add(egui::Label::new(RichText::new(note).small().color(color)).truncate());
             });
             if let Some(machine) = self.machines.get(id.0 as usize) {
@@ -137,6 +142,14 @@ impl Machines {
             }
         });
     }
+}
+
+/// The numbers of the last step's conflicts that assume a mode of this component, as the list of conflicts has them.
+fn conflicts_with(plant: &PlantMoment, id: ComponentId) -> Vec<String> {
+    let conflicts = plant.record.iter().flat_map(|record| &record.conflicts);
+    let of_component =
+        (1_usize..).zip(conflicts).filter(|(_, conflict)| conflict.modes.iter().any(|&(of, _)| of == id));
+    of_component.map(|(number, _)| number.to_string()).collect()
 }
 
 /// Whether components fail by chance, and with which seed.

@@ -17,6 +17,7 @@ pub mod kind;
 pub mod lex;
 pub mod limit;
 pub mod liveness;
+pub mod map;
 pub mod mixed;
 pub mod model;
 pub mod network;
@@ -80,6 +81,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &controllability::EXPLANATION,
     &exogenous::EXPLANATION,
     &traverse::EXPLANATION,
+    &map::EXPLANATION,
     &encounter::EXPLANATION,
     &plant::EXPLANATION,
     &liveness::EXPLANATION,

@@ -12,7 +12,7 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 14] = [
+const LATER: [&str; 15] = [
     "E-AMBIGUOUS",
     "E-SIZE",
     "E-KIND",
@@ -21,6 +21,7 @@ const LATER: [&str; 14] = [
     "E-LIMIT",
     "E-RESOURCE",
     "W-ENCOUNTER",
+    "W-MAP",
     "W-EXOGENOUS",
     "W-PLANT",
     "W-LIVENESS",

@@ -130,6 +130,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "E-AMBIGUOUS",
         "E-SIZE",
         "W-ENCOUNTER",
+        "W-MAP",
         "W-EXOGENOUS",
         "W-PLANT",
         "W-LIVENESS",

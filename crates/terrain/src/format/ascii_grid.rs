@@ -33,6 +33,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             _ => return Err(malformed(format!("unknown keyword `{keyword}` in the header"))),
         }
     }
+    for (keyword, size) in [("cellsize", cell_size_m), ("dy", cell_height_m)] {
+        if let Some(size) = size.filter(|size| !(size.is_finite() && *size > 0.0)) {
+            return Err(malformed(format!("`{keyword}` must be positive, not {size}")));
+        }
+    }
     if let (Some(width), Some(height)) = (cell_size_m, cell_height_m)
         && (width - height).abs() > 1e-4 * width.abs()
     {
@@ -72,12 +77,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         cell_size_m,
         origin_m: origin_m.filter(|origin| origin.iter().all(|meters| meters.is_finite())),
         meaning: Meaning::Levels { greatest: None },
+        num_unclear: 0,
     })
 }
 
 /// Whether a word represents a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.
 fn is_absent(word: &str) -> bool {
-    ["nan", "-nan", "null", "none", "na"].iter().any(|absent| word.eq_ignore_ascii_case(absent))
+    ["nan", "-nan", "null", "none", "na", "inf", "-inf", "infinity", "-infinity"]
+        .iter()
+        .any(|absent| word.eq_ignore_ascii_case(absent))
 }
 
 fn malformed(problem: String) -> FormatError {

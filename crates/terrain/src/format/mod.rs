@@ -115,6 +115,8 @@ pub struct Raster {
     pub origin_m: Option<[f64; 2]>,
     /// What the samples are.
     pub meaning: Meaning,
+    /// Cells of a gray level that the file does not explain, so that they are unknown.
+    pub num_unclear: usize,
 }
 
 /// What the samples of a raster are.

@@ -9,7 +9,7 @@ const FORMAT: &str = "MovingAI map";
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let text = std::str::from_utf8(bytes).map_err(|_| malformed("the file is not text".into()))?;
-    let mut lines = text.lines();
+    let mut lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines();
     let (mut width, mut height, mut has_corners) = (None, None, false);
     for line in lines.by_ref() {
         let mut words = line.split_ascii_whitespace();
@@ -42,8 +42,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         }
         for character in line.chars().take((width - cut) as usize) {
             // A cell with a small letter is split between two heights.
-            let kind = if has_corners { character.to_ascii_uppercase() } else { character };
-            samples.push(match kind {
+            samples.push(match character.to_ascii_uppercase() {
                 '.' | 'G' | 'S' => 0.0,
                 '@' | 'O' | 'T' | 'W' => 1.0,
                 _ => return Err(malformed(format!("row {} has a cell `{character}`", row + 1))),
@@ -51,7 +50,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         }
     }
     let (width, height) = (width - cut, height - cut);
-    Ok(Raster { width, height, samples, cell_size_m: None, origin_m: None, meaning: Meaning::Obstacles })
+    Ok(Raster {
+        width,
+        height,
+        samples,
+        cell_size_m: None,
+        origin_m: None,
+        meaning: Meaning::Obstacles,
+        num_unclear: 0,
+    })
 }
 
 fn size(word: &str) -> Result<u32, FormatError> {

@@ -195,6 +195,7 @@ fn read_samples(bytes: &[u8], layout: &RawLayout, holes: &[f64]) -> Result<Raste
         cell_size_m,
         origin_m: None,
         meaning: Meaning::Levels { greatest: None },
+        num_unclear: 0,
     })
 }
 

@@ -46,6 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         cell_size_m: None,
         origin_m: None,
         meaning: Meaning::Levels { greatest: Some(greatest) },
+        num_unclear: 0,
     })
 }
 

@@ -8,6 +8,9 @@ const FORMAT: &str = "ROS map";
 
 /// What ends the YAML before its image.
 const END: &str = "...";
+/// The level of 8 bits that programs write for a cell that they know nothing of.
+const UNKNOWN_LEVEL: f64 = 205.0;
+
 /// The YAML of a map is a few lines.
 const MAX_YAML_BYTES: usize = 16 << 10;
 
@@ -73,9 +76,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     else {
         return Err(unsupported(format!("its image {} needs gray levels; use PGM or PNG", about.image)));
     };
-    let samples = image.samples.iter().map(|&level| about.cell(f64::from(level), greatest)).collect();
+    let samples: Vec<f32> =
+        image.samples.iter().map(|&level| about.cell(f64::from(level), greatest)).collect();
+    let is_unclear = |(&level, cell): (&f32, &f32)| {
+        cell.is_nan() && about.mode == Mode::Trinary && level_of_8_bits(level, greatest) != UNKNOWN_LEVEL
+    };
+    let num_unclear = image.samples.iter().zip(&samples).filter(|&cell| is_unclear(cell)).count();
     Ok(Raster {
         samples,
+        num_unclear,
         cell_size_m: Some(about.resolution_m),
         origin_m: Some(about.origin_m),
         meaning: Meaning::Obstacles,
@@ -105,6 +114,10 @@ impl Description {
             f32::NAN
         }
     }
+}
+
+fn level_of_8_bits(level: f32, greatest: u32) -> f64 {
+    (f64::from(level) / f64::from(greatest) * 255.0).round()
 }
 
 /// The YAML, and what follows the line that ends it.

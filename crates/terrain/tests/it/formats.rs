@@ -203,6 +203,8 @@ fn a_moving_ai_map_gives_obstacles() {
     assert_eq!((raster.width, raster.height, raster.meaning), (4, 3, Meaning::Obstacles));
     let expected: Vec<bool> = "..@@..@@....".chars().map(|character| character == '@').collect();
     assert_eq!(raster.obstacles(), expected);
+    let small = read("\u{feff}type octile\nheight 3\nwidth 4\nmap\n.g@t\ns.ow\n....\n".as_bytes()).unwrap();
+    assert_eq!(small.obstacles(), expected);
 }
 
 fn pds_image() -> Vec<u8> {
@@ -525,6 +527,13 @@ fn absent_heights_of_an_ascii_grid_may_be_words() {
         let raster = read(grid.as_bytes()).unwrap_or_else(|error| panic!("{absent}: {error}"));
         let [a, b, c, d] = raster.samples[..] else { panic!("{absent}: {:?}", raster.samples) };
         assert!(a.is_nan() && b == 1.0 && c == 2.0 && d.is_nan(), "{absent}: {:?}", raster.samples);
+    }
+    let infinite = read(b"ncols 2\nnrows 1\ncellsize 1\ninf 1\n").unwrap();
+    assert!(infinite.samples[0].is_nan() && infinite.samples[1] == 1.0, "{:?}", infinite.samples);
+    for size in ["0", "-1", "nan", "inf"] {
+        let error = read(format!("ncols 2\nnrows 1\ncellsize {size}\n1 2\n").as_bytes());
+        let error = error.expect_err("no map has such cells").to_string();
+        assert!(error.contains("`cellsize` must be positive"), "{size}: {error}");
     }
     let error = read(b"ncols 2\nnrows 2\ncellsize 1\nnan 1 2 nothing\n");
     let error = error.expect_err("`nothing` is not a number").to_string();

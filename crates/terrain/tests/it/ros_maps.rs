@@ -55,6 +55,16 @@ fn a_level_at_a_threshold_is_beyond_it() {
     }
 }
 
+/// 205 is what programs write for a cell that they know nothing of; any other level between the thresholds may be a mistake.
+#[test]
+fn levels_that_the_thresholds_do_not_explain_are_counted() {
+    let unclear = |yaml: &str, image: &[u8]| raster(yaml, image).expect("it is a map").num_unclear;
+    assert_eq!(unclear(YAML, IMAGE), 0);
+    assert_eq!(unclear(YAML, b"P5 4 1 255\n\x00\x80\xcd\xfe"), 1);
+    assert_eq!(unclear(&YAML.replace("0.65", "0.8"), IMAGE), 1);
+    assert_eq!(unclear(&format!("{YAML}mode: scale\n"), b"P5 4 1 255\n\x00\x80\xcd\xfe"), 0);
+}
+
 #[test]
 fn levels_count_by_the_greatest_of_their_image() {
     let deep = b"P2 3 1 1000 0 500 1000";

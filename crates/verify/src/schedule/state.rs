@@ -65,7 +65,7 @@ impl Schedule<'_> {
                 let names = [earlier.label, later.label].map(|label| self.network.label_name(label));
                 let variable = &self.network.variables[state.variable.index()].name;
                 let message = format!(
-                    "{} and {} set {variable} to different values at {}",
+                    "{} and {} both set {variable} at {}",
                     names[0],
                     names[1],
                     Bound::Finite(self.time(later.start))

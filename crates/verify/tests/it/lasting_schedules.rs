@@ -54,7 +54,7 @@ fn what_is_required_holds_throughout() {
     // Stowed before it is needed.
     only(&arm(0, 30, 10), Rule::State, &[dig, stow], "Stow#1 contradicts it");
     // Both at once: then nothing is left of either.
-    for (at_stow, words) in [(4, "both about ARM at 4"), (0, "both about ARM at 0")] {
+    for (at_stow, words) in [(4, "both set ARM at 4"), (0, "both set ARM at 0")] {
         let found = arm(0, 30, at_stow);
         only(&found[..1], Rule::State, &[deploy, stow], words);
         only(&found[1..], Rule::State, &[dig, stow], "Stow#1 contradicts it");

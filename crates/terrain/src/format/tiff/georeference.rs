@@ -92,6 +92,9 @@ impl Georeference {
 fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
     let scale = doubles(decoder, Tag::ModelPixelScaleTag)?;
     if let &[x, y, ..] = scale.as_slice() {
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(malformed(format!("its ModelPixelScale is {x} × {y}")));
+        }
         if x < 0.0 || y < 0.0 {
             return Err(unsupported(format!(
                 "its ModelPixelScale {x} × {y} is ambiguous (north up or south up); save it again with the original program \

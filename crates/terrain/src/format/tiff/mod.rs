@@ -66,7 +66,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         greatest => Meaning::Levels { greatest },
     };
     let Georeference { cell_size_m, origin_m, .. } = georeference;
-    Ok(Raster { width, height, samples, cell_size_m, origin_m, meaning })
+    Ok(Raster { width, height, samples, cell_size_m, origin_m, meaning, num_unclear: 0 })
 }
 
 fn open(bytes: &[u8]) -> Result<Decoder<'_>, FormatError> {
