@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use motion::VehicleModel;
 use nalgebra::{Point2, Vector2};
+use rmpl::diagnostics::map;
 use rmpl::program::{ObstacleShape, Program, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
@@ -138,14 +139,9 @@ impl Grounds {
     pub(crate) fn unclear_cells(&self, program: &Program) -> Option<Diagnostic> {
         let declared = program.world.terrain.as_ref()?;
         let imported = self.imported.get(&declared.asset).filter(|imported| imported.num_unclear > 0)?;
-        let (unclear, frame) = (imported.num_unclear, imported.map.frame());
-        let all = u64::from(frame.width) * u64::from(frame.height);
-        let message = format!(
-            "{unclear} of {all} cells of \"{}\" have a gray value between its thresholds: they are unknown, and no path crosses them",
-            declared.asset
-        );
-        let hint = "change `free_thresh` or `occupied_thresh` in the file, or use 205 for unknown cells";
-        Some(Diagnostic::warning(rmpl::diagnostics::map::CODE, declared.asset_span, message).with_hint(hint))
+        let frame = imported.map.frame();
+        let all = frame.width as usize * frame.height as usize;
+        Some(map::unclear((imported.num_unclear, all), &declared.asset, declared.asset_span))
     }
 
     /// The free space of vehicles of `model` among `obstacles`.

@@ -338,7 +338,7 @@ impl Record {
         self.push(Entry::new(Sealed::new(self.said(who, act)), String::new()));
     }
 
-    fn said(&self, who: Who, act: Act) -> Said {
+    pub(super) fn said(&self, who: Who, act: Act) -> Said {
         let Who { by, role, time, content_hash, plan_hash } = who;
         let former = self.last_before(&time);
         let (mission, key, rules, acknowledged) = (self.mission.clone(), None, String::new(), Vec::new());

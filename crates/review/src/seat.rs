@@ -158,7 +158,7 @@ mod tests {
         };
         assert_eq!(wanted(&board), 3);
         assert_eq!(filled_by(&["Ada", "Chair", "Eve"]), 2);
-        // Whoever comes first, Grace is where no one else may be.
+        // In either order, Grace takes the place that only she may take.
         for names in [["Grace", "Ada", "Chair"], ["Ada", "Chair", "Grace"]] {
             assert_eq!(filled_by(&names), 3, "{names:?}");
         }

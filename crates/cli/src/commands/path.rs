@@ -174,10 +174,9 @@ fn load(args: &Args) -> anyhow::Result<Map> {
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
     if raster.num_unclear > 0 {
-        print_error(&format!(
-            "note: {} cells of {name} have a gray value between its thresholds: they are unknown, and no path crosses them",
-            raster.num_unclear
-        ));
+        let cells = (raster.num_unclear, raster.samples.len());
+        let unclear = rmpl::diagnostics::map::unclear(cells, &name.to_string(), rmpl::Span::default());
+        print_error(&format!("note: {}", unclear.message));
     }
     let frame = GridFrame::new(raster.width, raster.height, args.cell);
     if let Some(step) = args.step {

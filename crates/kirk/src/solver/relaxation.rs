@@ -123,7 +123,7 @@ impl Row {
     }
 
     /// The same divided by what all its weights have in common.
-    pub(super) fn rounded(self) -> Self {
+    fn rounded(self) -> Self {
         let common = self.terms.values().fold(0, |common, &weight| weight.unsigned_abs().gcd(&common));
         match i64::try_from(common) {
             Ok(common) if common > 1 => Self {
@@ -163,19 +163,19 @@ pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> [Op
 }
 
 /// A capacity, and the work that it is taken for.
-struct Share {
-    capacity: i64,
-    works: Vec<Work>,
+pub(super) struct Share {
+    pub(super) capacity: i64,
+    pub(super) works: Vec<Work>,
 }
 
 /// Work that is done at some time between two.
-struct Work {
+pub(super) struct Work {
     /// `None` if it is done for sure.
-    variable: Option<Variable>,
+    pub(super) variable: Option<Variable>,
     earliest_start: i64,
     latest_end: i64,
-    duration: i64,
-    amount: i64,
+    pub(super) duration: i64,
+    pub(super) amount: i64,
 }
 
 impl Work {
@@ -201,7 +201,7 @@ impl Work {
 }
 
 impl Share {
-    fn new(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Option<Self> {
+    pub(super) fn new(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Option<Self> {
         let ModelSupply::Reusable { capacity } = supply else { return None };
         let active = tasks.iter().filter(|task| task.is_active);
         let works = active.filter_map(|task| Work::new(trail, task.interval, task.amount));
@@ -209,7 +209,7 @@ impl Share {
     }
 
     /// What takes turns shares one place.
-    fn taking_turns(trail: &Trail, turns: &[Interval]) -> Self {
+    pub(super) fn taking_turns(trail: &Trail, turns: &[Interval]) -> Self {
         let works = turns.iter().filter_map(|&interval| Work::new(trail, interval, 1));
         Self { capacity: 1, works: works.collect() }
     }
@@ -236,7 +236,8 @@ impl Share {
         rows.filter_map(|(_, from, to)| self.row(from, to)).collect()
     }
 
-    fn row(&self, from: i64, to: i64) -> Option<Row> {
+    /// The work between two times, and how much there is room for; nothing if that does not fit.
+    pub(super) fn row(&self, from: i64, to: i64) -> Option<Row> {
         let mut row = Row { terms: BTreeMap::new(), most: self.capacity.checked_mul(to - from)? };
         for work in &self.works {
             let taken = work.least_within(from, to).checked_mul(work.amount)?;

@@ -4,8 +4,6 @@
 //! Where each alternative of a choice gives work to one of many, all of them may have too little time although none of them
 //! has: no search over single vehicles shows that in reasonable time (the pigeonhole principle).
 
-use std::collections::BTreeMap;
-
 use tpn::LabelId;
 
 use super::Solver;
@@ -13,23 +11,14 @@ use super::encode::{Part, Problem};
 use super::goals::{Sum, Weights};
 use super::interval::Interval;
 use super::linear::LinearKind;
-use super::literal::Literal;
-use super::relaxation::Row;
+use super::relaxation::Share;
 use crate::conditions::Conditions;
-use crate::demands::ModelSupply;
 
 /// Of more conditions on one state not all are compared with each other.
 const MAX_LABELS: usize = 400;
 
 /// Where fewer compete, they are soon tried one by one.
 const MIN_INTERVALS: usize = 3;
-
-/// What shares a state or a resource, and how much of it can be done at once.
-struct Pool {
-    capacity: i64,
-    /// With what each takes of the capacity.
-    works: Vec<(Interval, i64)>,
-}
 
 impl Problem<'_> {
     /// Finds what takes turns because it requires or changes the same state, and limits the work of all states together, and
@@ -50,22 +39,17 @@ impl Problem<'_> {
             self.taking_turns(labels.filter(counts).take(MAX_LABELS))
         });
         self.turns = variables.filter(|turns| turns.len() >= MIN_INTERVALS).collect();
-        let of_state = |turns: &Vec<Interval>| Pool {
-            capacity: 1,
-            works: turns.iter().map(|&interval| (interval, 1)).collect(),
-        };
-        let states: Vec<Pool> = self.turns.iter().map(of_state).collect();
-        let resources = self.shares.tasks().into_iter().filter_map(|(supply, tasks)| {
-            let ModelSupply::Reusable { capacity } = supply else { return None };
-            let tasks = tasks.into_iter().filter(|task| task.is_active && task.interval.duration > 0);
-            let works: Vec<(Interval, i64)> = tasks.map(|task| (task.interval, task.amount)).collect();
-            (works.len() >= MIN_INTERVALS).then_some(Pool { capacity, works })
-        });
-        let resources: Vec<Pool> = resources.collect();
-        for pools in [states, resources] {
-            if pools.len() > 1 {
-                self.limit_until_the_end(solver, &pools);
-                self.limit_at_the_latest(solver, &pools);
+        let trail = &solver.trail;
+        let states: Vec<Share> = self.turns.iter().map(|turns| Share::taking_turns(trail, turns)).collect();
+        let resources = self.shares.tasks().into_iter();
+        let resources: Vec<Share> = resources
+            .filter_map(|(supply, tasks)| Share::new(trail, supply, &tasks))
+            .filter(|share| share.works.len() >= MIN_INTERVALS)
+            .collect();
+        for shares in [states, resources] {
+            if shares.len() > 1 {
+                self.limit_until_the_end(solver, &shares);
+                self.limit_at_the_latest(solver, &shares);
             }
         }
     }
@@ -83,18 +67,17 @@ impl Problem<'_> {
     }
 
     /// All work is done before the mission ends.
-    fn limit_until_the_end(&self, solver: &mut Solver, pools: &[Pool]) {
+    fn limit_until_the_end(&self, solver: &mut Solver, shares: &[Share]) {
         let (start, end) = (self.times[self.model.start], self.times[self.model.demands.end]);
         let mut weights = Weights::new();
         let (mut done, mut capacity) = (0_i128, 0_i128);
-        for pool in pools {
-            capacity += i128::from(pool.capacity);
-            for (interval, amount) in &pool.works {
-                let work = i128::from(interval.duration) * i128::from(*amount);
-                if solver.trail.holds(interval.presence) {
-                    done += work;
-                } else {
-                    add(&mut weights, interval.presence, work);
+        for share in shares {
+            capacity += i128::from(share.capacity);
+            for work in &share.works {
+                let amount = i128::from(work.duration) * i128::from(work.amount);
+                match work.variable {
+                    Some(variable) => *weights.entry(variable).or_default() += amount,
+                    None => done += amount,
                 }
             }
         }
@@ -103,30 +86,17 @@ impl Problem<'_> {
         self.limit(solver, weights, most);
     }
 
-    /// The same at the latest end, where what each pool does is a multiple of what all its work has in common.
-    fn limit_at_the_latest(&self, solver: &mut Solver, pools: &[Pool]) {
+    /// The same at the latest end, where what each does is a multiple of what all its work has in common.
+    fn limit_at_the_latest(&self, solver: &mut Solver, shares: &[Share]) {
         let (start, end) = (self.times[self.model.start], self.times[self.model.demands.end]);
-        let Some(time) = solver.trail.most(end).checked_sub(solver.trail.least(start)) else { return };
+        let (from, to) = (solver.trail.least(start), solver.trail.most(end));
+        if from >= to {
+            return;
+        }
         let mut weights = Weights::new();
         let mut most = 0_i128;
-        for pool in pools {
-            let (mut terms, mut done) = (BTreeMap::new(), 0_i128);
-            for (interval, amount) in &pool.works {
-                let Some(work) = interval.duration.checked_mul(*amount) else { return };
-                if solver.trail.holds(interval.presence) {
-                    done += i128::from(work);
-                } else {
-                    let sum: &mut i64 = terms.entry(interval.presence.side.variable()).or_default();
-                    let Some(added) = sum.checked_add(work) else { return };
-                    *sum = added;
-                }
-            }
-            let room = i128::from(pool.capacity) * i128::from(time) - done;
-            let Ok(room) = i64::try_from(room) else { return };
-            if room < 0 {
-                return;
-            }
-            let row = Row { terms, most: room }.rounded();
+        for share in shares {
+            let Some(row) = share.row(from, to) else { return };
             most += i128::from(row.most);
             for (variable, weight) in row.terms {
                 *weights.entry(variable).or_default() += i128::from(weight);
@@ -171,8 +141,4 @@ impl Holding {
             (Self::Ask(left), Self::Ask(right)) => conditions.contradict(left, right),
         }
     }
-}
-
-fn add(weights: &mut Weights, presence: Literal, work: i128) {
-    *weights.entry(presence.side.variable()).or_default() += work;
 }

@@ -9,7 +9,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, FaultSeed, PlantMoment};
 
 use super::machine::{Machine, Standing};
-use super::title;
+use super::{hitting_sets, title};
 use crate::Context;
 
 /// The state machines of a model's components, laid out.
@@ -107,7 +107,7 @@ impl Machines {
     ) {
         let tokens = context.tokens;
         let standing = Standing::new(context, &self.model, plant, id);
-        let conflicts = conflicts_with(plant, id);
+        let conflicts = conflicts_with(context, plant, id);
         let outline = match (standing.injected, standing.is_right() && conflicts.is_empty()) {
             (Some(_), _) => tokens.error,
             (None, true) => tokens.line,
@@ -145,10 +145,9 @@ impl Machines {
 }
 
 /// The numbers of the last step's conflicts that assume a mode of this component, as the list of conflicts has them.
-fn conflicts_with(plant: &PlantMoment, id: ComponentId) -> Vec<String> {
-    let conflicts = plant.record.iter().flat_map(|record| &record.conflicts);
-    let of_component =
-        (1_usize..).zip(conflicts).filter(|(_, conflict)| conflict.modes.iter().any(|&(of, _)| of == id));
+fn conflicts_with(context: &Context<'_>, plant: &PlantMoment, id: ComponentId) -> Vec<String> {
+    let conflicts = (1_usize..).zip(hitting_sets::conflicts(context, plant));
+    let of_component = conflicts.filter(|(_, conflict)| conflict.modes.iter().any(|&(of, _)| of == id));
     of_component.map(|(number, _)| number.to_string()).collect()
 }
 

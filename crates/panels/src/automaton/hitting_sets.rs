@@ -2,8 +2,8 @@
 
 use egui::accesskit::Role;
 use egui::{Button, Frame, Margin, RichText, Ui};
-use plant::Model;
 use plant::hitting_sets::{HittingLabel, HittingMove};
+use plant::{Conflict, Model};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, PlantMoment};
@@ -17,6 +17,15 @@ use crate::Context;
 /// From a node to its children, in points.
 const INDENT: f32 = 16.0;
 
+/// The conflicts of the last step, in the order in which they are numbered.
+pub(super) fn conflicts<'a>(context: &Context<'a>, plant: &'a PlantMoment) -> &'a [Conflict] {
+    match (context.state.automaton.diagnosing(), &plant.record) {
+        (Some(diagnosing), _) => diagnosing.tree().conflicts(),
+        (None, Some(record)) => &record.conflicts,
+        (None, None) => &[],
+    }
+}
+
 /// Lists the conflicts, and shows the tree if it was started.
 pub(super) fn show(
     ui: &mut Ui,
@@ -25,10 +34,12 @@ pub(super) fn show(
     plant: &PlantMoment,
     commands: &mut CommandSender,
 ) {
-    let Some(record) = plant.record.as_ref().filter(|record| !record.conflicts.is_empty()) else { return };
+    if plant.record.as_ref().is_none_or(|record| record.conflicts.is_empty()) {
+        return;
+    }
     let tokens = context.tokens;
     let diagnosing = context.state.automaton.diagnosing();
-    let conflicts = diagnosing.map_or(record.conflicts.as_slice(), |it| it.tree().conflicts());
+    let conflicts = conflicts(context, plant);
     title(ui, context, "Conflicts", "sets of assumptions that can't all hold");
     for (at, conflict) in conflicts.iter().enumerate() {
         let text = format!("{}. {}", at + 1, conflict_text(model, conflict));

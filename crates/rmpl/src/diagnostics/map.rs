@@ -1,7 +1,8 @@
 //! `W-MAP`: gray values of a map file that mean neither free nor occupied. Only who reads the file can find it.
 
-use crate::diagnostic::{Code, Severity};
+use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
+use crate::span::Span;
 
 pub const CODE: Code = Code("W-MAP");
 
@@ -22,3 +23,12 @@ location BASE (1, 1);
 vehicle R1 : ATRV-Jr at BASE;
 scenario Day[0,60] = { delay }",
 };
+
+/// A map of which so many of all cells are unclear, where the mission names it.
+pub fn unclear((cells, all): (usize, usize), map: &str, span: Span) -> Diagnostic {
+    let message = format!(
+        "{cells} of {all} cells of \"{map}\" have a gray value between its thresholds: they are unknown, and no path crosses them"
+    );
+    Diagnostic::warning(CODE, span, message)
+        .with_hint("change `free_thresh` or `occupied_thresh` in the file, or use 205 for unknown cells")
+}

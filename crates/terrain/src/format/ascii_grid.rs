@@ -70,15 +70,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let half_cell_m = 0.5 * cell_size_m.unwrap_or(super::DEFAULT_CELL_SIZE_M);
     let of_axis = |axis: usize| corner[axis].or_else(|| Some(center[axis]? - half_cell_m));
     let origin_m = of_axis(0).zip(of_axis(1)).map(|(east, north)| [east, north]);
-    Ok(Raster {
-        width,
-        height,
-        samples,
-        cell_size_m,
-        origin_m: origin_m.filter(|origin| origin.iter().all(|meters| meters.is_finite())),
-        meaning: Meaning::Levels { greatest: None },
-        num_unclear: 0,
-    })
+    let origin_m = origin_m.filter(|origin| origin.iter().all(|meters| meters.is_finite()));
+    let meaning = Meaning::Levels { greatest: None };
+    Ok(Raster { cell_size_m, origin_m, ..Raster::new((width, height), samples, meaning) })
 }
 
 /// Whether a word represents a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.

@@ -193,6 +193,11 @@ pub fn read_terrain(bytes: &[u8], options: &ImportOptions) -> Result<Terrain, Fo
 }
 
 impl Raster {
+    /// A raster of a file that says neither how large its cells are nor where it lies.
+    fn new((width, height): (u32, u32), samples: Vec<f32>, meaning: Meaning) -> Self {
+        Self { width, height, samples, cell_size_m: None, origin_m: None, meaning, num_unclear: 0 }
+    }
+
     /// The map with its south-west corner where the file says, or else at the origin. Obstacles stand a meter above
     /// the ground.
     pub fn into_terrain(self) -> Terrain {

@@ -50,15 +50,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         }
     }
     let (width, height) = (width - cut, height - cut);
-    Ok(Raster {
-        width,
-        height,
-        samples,
-        cell_size_m: None,
-        origin_m: None,
-        meaning: Meaning::Obstacles,
-        num_unclear: 0,
-    })
+    Ok(Raster::new((width, height), samples, Meaning::Obstacles))
 }
 
 fn size(word: &str) -> Result<u32, FormatError> {

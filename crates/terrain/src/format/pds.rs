@@ -188,15 +188,8 @@ fn read_samples(bytes: &[u8], layout: &RawLayout, holes: &[f64]) -> Result<Raste
         })
         .collect();
     let (width, height, cell_size_m) = (layout.width, layout.height, layout.cell_size_m);
-    Ok(Raster {
-        width,
-        height,
-        samples,
-        cell_size_m,
-        origin_m: None,
-        meaning: Meaning::Levels { greatest: None },
-        num_unclear: 0,
-    })
+    let meaning = Meaning::Levels { greatest: None };
+    Ok(Raster { cell_size_m, ..Raster::new((width, height), samples, meaning) })
 }
 
 /// Reads a label; `attached` says whether the samples are in the same file.

@@ -39,15 +39,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         })
         .collect();
     let greatest = if sample_bytes == 2 { 65_535 } else { 255 };
-    Ok(Raster {
-        width,
-        height,
-        samples,
-        cell_size_m: None,
-        origin_m: None,
-        meaning: Meaning::Levels { greatest: Some(greatest) },
-        num_unclear: 0,
-    })
+    Ok(Raster::new((width, height), samples, Meaning::Levels { greatest: Some(greatest) }))
 }
 
 fn malformed(error: &::png::DecodingError) -> FormatError {

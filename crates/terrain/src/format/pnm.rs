@@ -36,15 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         }
         (0..count).map(|_| tokens.number("a sample").map(|sample| sample as f32)).collect::<Result<_, _>>()?
     };
-    Ok(Raster {
-        width,
-        height,
-        samples,
-        cell_size_m: None,
-        origin_m: None,
-        meaning: Meaning::Levels { greatest: Some(greatest) },
-        num_unclear: 0,
-    })
+    Ok(Raster::new((width, height), samples, Meaning::Levels { greatest: Some(greatest) }))
 }
 
 fn malformed(problem: String) -> FormatError {

@@ -127,12 +127,12 @@ fn a_board_is_not_cheated_in_the_page() -> Result<()> {
 fn nobody_weakens_a_board_alone() -> Result<()> {
     let page = approved_by_ada()?;
     let one = json!({ "board": [{ "role": "Science", "approvals": 1 }] });
-    // Whoever signed last signs the rules.
+    // The person who signed last signs the rules.
     dispatch(&page, "review.rules", &one)?;
     page.wait_for(&says("not in force yet"))?;
     page.wait_for("state.review.history.at(-1).withoutEffect !== null")?;
     page.wait_for("state.review.board[0].wanted === 2 && state.review.planStatus === 'in-review'")?;
-    // Grace approves under the board of two, and agrees to one approval; then whoever approved approves again.
+    // Grace approves under the board of two, and agrees to one approval; then both approve again.
     dispatch(&page, "review.approve", &json!({ "name": "Grace" }))?;
     page.wait_for("state.review.planStatus === 'approved'")?;
     dispatch(&page, "review.rules", &one)?;

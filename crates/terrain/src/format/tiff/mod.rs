@@ -66,7 +66,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         greatest => Meaning::Levels { greatest },
     };
     let Georeference { cell_size_m, origin_m, .. } = georeference;
-    Ok(Raster { width, height, samples, cell_size_m, origin_m, meaning, num_unclear: 0 })
+    Ok(Raster { cell_size_m, origin_m, ..Raster::new((width, height), samples, meaning) })
 }
 
 fn open(bytes: &[u8]) -> Result<Decoder<'_>, FormatError> {
