@@ -233,6 +233,25 @@ fn the_hitting_set_tree_is_a_tree_and_is_built_with_keys() {
         .filter(|text| text.starts_with("conflict "))
         .collect();
     assert!(of_component.iter().any(|text| text == "conflict 1, 2"), "{of_component:?}");
+    // Each is on a card of its own, with room for it.
+    let mut labels: Vec<egui::Rect> = app
+        .harness
+        .query_all_by_label_contains("conflict ")
+        .filter(|node| {
+            node.accesskit_node()
+                .label()
+                .or_else(|| node.accesskit_node().value())
+                .is_some_and(|it| it.starts_with("conflict "))
+        })
+        .map(|node| node.rect())
+        .collect();
+    labels.extend(
+        ["Battery", "Switch", "LampA", "LampB"]
+            .map(|name| app.harness.get_by_role_and_label(Role::Button, name).rect()),
+    );
+    for (at, one) in labels.iter().enumerate() {
+        assert!(labels[at + 1..].iter().all(|other| !one.intersects(*other)), "{one:?} of {labels:?}");
+    }
     button(&mut app, "Build hitting-set tree");
     assert_eq!(items(&app), [("all assumed: open".to_owned(), 1, [0, 1])]);
     button(&mut app, "Diagnosis: all assumed");

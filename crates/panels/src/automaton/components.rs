@@ -50,7 +50,8 @@ impl Machines {
         let mut row: Vec<(ComponentId, f32)> = Vec::new();
         let mut used = 0.0;
         for (id, machine) in self.model.component_ids().zip(&self.machines) {
-            let width = self.card_width(ui, id, machine).min(available);
+            let conflicts = conflicts_with(context, plant, id);
+            let width = self.card_width(ui, id, machine, conflicts.as_deref()).min(available);
             if !row.is_empty() && used + CARD_GAP + width > available {
                 self.row(ui, context, plant, &row, commands);
                 row.clear();
@@ -62,12 +63,15 @@ impl Machines {
         self.row(ui, context, plant, &row, commands);
     }
 
-    fn card_width(&self, ui: &Ui, id: ComponentId, machine: &Machine) -> f32 {
+    fn card_width(&self, ui: &Ui, id: ComponentId, machine: &Machine, conflicts: Option<&str>) -> f32 {
+        let width = |text: &str, style: egui::TextStyle| {
+            let font = style.resolve(ui.style());
+            ui.painter().layout_no_wrap(text.to_owned(), font, ui.visuals().text_color()).size().x
+        };
         let name = self.model.component(id).map_or("", |component| component.name.as_str());
-        let font = egui::TextStyle::Button.resolve(ui.style());
-        let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().text_color());
-        let head = text.size().x + 2.0 * ui.spacing().button_padding.x;
-        head.max(machine.width() + 2.0) + CARD_PADDING.sum().x
+        let name = width(name, egui::TextStyle::Button) + 2.0 * ui.spacing().button_padding.x;
+        let conflicts = conflicts.map_or(0.0, |text| space::S + width(text, egui::TextStyle::Small));
+        (name + conflicts).max(machine.width() + 2.0) + CARD_PADDING.sum().x
     }
 
     /// Cards beside each other share what is left of the width.
@@ -108,7 +112,7 @@ impl Machines {
         let tokens = context.tokens;
         let standing = Standing::new(context, &self.model, plant, id);
         let conflicts = conflicts_with(context, plant, id);
-        let outline = match (standing.injected, standing.is_right() && conflicts.is_empty()) {
+        let outline = match (standing.injected, standing.is_right() && conflicts.is_none()) {
             (Some(_), _) => tokens.error,
             (None, true) => tokens.line,
             (None, false) => tokens.warning,
@@ -131,11 +135,13 @@ impl Machines {
                     || (class.to_owned(), tokens.text_faint),
                     |mode| (format!("→ {}", self.model.mode_name(id, mode)), tokens.error),
                 );
-                if !conflicts.is_empty() {
-                    let text = format!("conflict {}", conflicts.join(", "));
+                if let Some(text) = &conflicts {
                     ui.label(RichText::new(text).small().color(tokens.warning));
                 }
-                ui.add(egui::Label::new(RichText::new(note).small().color(color)).truncate());
+                // The class, which the button tells too, gives way to the conflicts.
+                if conflicts.is_none() || standing.injected.is_some() {
+                    ui.add(egui::Label::new(RichText::new(note).small().color(color)).truncate());
+                }
             });
             if let Some(machine) = self.machines.get(id.0 as usize) {
                 machine.show(ui, context, &self.model, &standing, commands);
@@ -144,11 +150,13 @@ impl Machines {
     }
 }
 
-/// The numbers of the last step's conflicts that assume a mode of this component, as the list of conflicts has them.
-fn conflicts_with(context: &Context<'_>, plant: &PlantMoment, id: ComponentId) -> Vec<String> {
+/// Which of the last step's conflicts assume a mode of this component, by their numbers in the list of conflicts.
+fn conflicts_with(context: &Context<'_>, plant: &PlantMoment, id: ComponentId) -> Option<String> {
     let conflicts = (1_usize..).zip(hitting_sets::conflicts(context, plant));
-    let of_component = conflicts.filter(|(_, conflict)| conflict.modes.iter().any(|&(of, _)| of == id));
-    of_component.map(|(number, _)| number.to_string()).collect()
+    let of_component =
+        conflicts.filter(|(_, conflict)| conflict.modes.iter().any(|&(component, _)| component == id));
+    let numbers: Vec<String> = of_component.map(|(number, _)| number.to_string()).collect();
+    (!numbers.is_empty()).then(|| format!("conflict {}", numbers.join(", ")))
 }
 
 /// Whether components fail by chance, and with which seed.
