@@ -1,7 +1,7 @@
 // Loads the front end, starts it on the canvas and puts `window.enroute` in place.
 
 import init, { start, usesKey } from "../wasm/page.js";
-import { findAddress, noteAddress } from "./address.js";
+import { findAddress, showAddress } from "./address.js";
 import { createApi } from "./api.js";
 import { ensureClipboard, readClipboard } from "./clipboard.js";
 import { startCore } from "./core.js";
@@ -63,6 +63,7 @@ async function load() {
     ...joinTabs(),
     readClipboard,
     isPrivateWindow,
+    showAddress,
     film: camera.film,
     saveFilm: camera.saveFilm,
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
@@ -74,13 +75,11 @@ async function load() {
 
   // The last moment at which a page that closes, or is put away, can still write something down.
   function keepNow(typed) {
-    const seen = location.hash;
     try {
       frontEnd?.keepNow(JSON.stringify(typed));
     } catch {
       // A front end that has stopped has written down all that it took in.
     }
-    noteAddress(seen);
   }
   // A page that may come back takes in itself what was typed.
   window.addEventListener("pagehide", ({ persisted }) => keepNow(persisted ? [] : typing.waiting()));

@@ -38,6 +38,10 @@ extern "C" {
     #[wasm_bindgen(method, js_name = readClipboard)]
     pub(crate) fn read_clipboard(this: &Glue) -> Promise;
 
+    /// Shows a fragment in the address, instead of what is there. See `web/address.js`.
+    #[wasm_bindgen(method, js_name = showAddress)]
+    pub(crate) fn show_address(this: &Glue, fragment: &str);
+
     /// Whether the window forgets everything when it is closed, as a promise. See `web/private.js`.
     #[wasm_bindgen(method, js_name = isPrivateWindow)]
     pub(crate) fn is_private_window(this: &Glue) -> Promise;

@@ -303,10 +303,7 @@ impl Host for PageHost {
     }
 
     fn set_fragment(&mut self, fragment: &str) {
-        if let Ok(history) = self.window.history() {
-            // Browsers refuse changes that come too fast; the next one brings the address up to date.
-            let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{fragment}")));
-        }
+        self.glue.show_address(fragment);
     }
 
     fn link(&self, fragment: &str) -> Option<String> {
