@@ -1,10 +1,13 @@
 //! Missions of fleets (SPEC 17) against the same missions with every vehicle written out: the networks are equal but for names,
 //! and so are the plans. The generator writes both texts from one mission and expands nothing with the program's own code.
 
+use std::collections::BTreeSet;
+
 use acceptance::mission::{first_plan, network};
 use kirk::{Options, Search, Status, Unlimited};
-use tpn::Network;
+use tpn::exchange::Exchangeable;
 use tpn::generate::Rng;
+use tpn::{LabelId, Network, Occurrence, Plan};
 
 /// Random missions.
 const MISSIONS: u64 = 200;
@@ -49,10 +52,10 @@ struct Maker {
 }
 
 impl Maker {
-    fn mission(seed: u64) -> Mission {
+    fn mission(seed: u64, most: i64) -> Mission {
         let mut maker = Self { rng: Rng::new(seed ^ 0xF1EE), left: 0, fleet: 0 };
         maker.left = maker.rng.between(1, 4);
-        maker.fleet = maker.rng.between(1, 2) as usize;
+        maker.fleet = maker.rng.between(1, most) as usize;
         let clauses = (0..3).map(|_| maker.clauses()).collect();
         let (level, horizon) = (maker.rng.between(0, 9), maker.rng.between(4, 14));
         let branches = (0..maker.rng.between(1, 2)).map(|_| maker.node(0, 0)).collect();
@@ -235,7 +238,7 @@ fn structure(network: &Network) -> Vec<String> {
 fn a_fleet_means_what_its_vehicles_written_out_mean() {
     let (mut planned, mut failed) = (0, 0);
     for seed in 0..MISSIONS {
-        let mission = Maker::mission(seed);
+        let mission = Maker::mission(seed, 2);
         let (short, long) = (mission.short(), mission.long());
         let (of_short, of_long) = (network(&short), network(&long));
         assert_eq!(structure(&of_short), structure(&of_long), "mission {seed}:\n{short}\n{long}");
@@ -252,6 +255,155 @@ fn a_fleet_means_what_its_vehicles_written_out_mean() {
         }
     }
     assert!(planned > 100 && failed > 50, "{planned} {failed}");
+}
+
+/// What a plan does, and which vehicles do it: calls and links by where they are written, with their arguments, where vehicles
+/// are exchanged.
+fn done(network: &Network, plan: &Plan, exchanged: &dyn Fn(&str) -> String) -> Vec<String> {
+    let call = |occurrence: &Occurrence| {
+        let arguments: Vec<String> = occurrence.arguments.iter().map(|it| exchanged(it)).collect();
+        format!("{:?} {arguments:?}", occurrence.span)
+    };
+    let label = |label: LabelId| {
+        let label = &network.labels[label.index()];
+        let owner = label.owner.map(|owner| call(&network.occurrences[owner.index()]));
+        format!("{owner:?} {}", exchanged(&label.text))
+    };
+    let is_selected = |occurrence: &&Occurrence| {
+        occurrence.arc.is_none_or(|arc| plan.selected_arcs[arc.index()])
+            && plan.selected_nodes[occurrence.start.index()]
+    };
+    let calls = network.occurrences.iter().filter(is_selected).map(call);
+    let links = plan.causal_links.iter().map(|link| format!("{} for {}", label(link.tell), label(link.ask)));
+    let orders = plan.conflict_order.iter().map(|it| format!("{} < {}", label(it.first), label(it.then)));
+    // What is first among those that give a value is compared in pairs.
+    let changes = plan.state_order.iter().flat_map(|order| {
+        let pairs = order.producers.iter().enumerate();
+        pairs.flat_map(|(at, one)| order.producers[at + 1..].iter().map(move |other| (*one, *other)))
+    });
+    let changes = changes.map(|(one, other)| format!("{} before {}", label(one), label(other)));
+    let mut done: Vec<String> = calls.chain(links).chain(orders).chain(changes).collect();
+    done.sort();
+    done
+}
+
+/// All ways in which so many vehicles take each other's place.
+fn permutations(count: usize) -> Vec<Vec<usize>> {
+    if count == 0 {
+        return vec![Vec::new()];
+    }
+    let shorter = permutations(count - 1).into_iter();
+    shorter
+        .flat_map(|rest| {
+            (0..count).map(move |at| {
+                let mut all = rest.clone();
+                all.insert(at, count - 1);
+                all
+            })
+        })
+        .collect()
+}
+
+/// Of the plans that a search lists without exchanging anything, one is left of those that are equal up to the names of the
+/// fleet's vehicles, if the mission names none of these.
+#[test]
+fn plans_that_differ_in_exchanged_vehicles_are_listed_once() {
+    let (mut exchanged, mut fewer, mut named) = (0, 0, 0);
+    for seed in 0..16 * MISSIONS {
+        let mission = Maker::mission(seed, 3);
+        let text = mission.short();
+        let scenario = &text[text.find("scenario").expect("a scenario")..];
+        let network = network(&text);
+        let mut plain = network.clone();
+        plain.exchangeable = Exchangeable::default();
+        let options =
+            Options { all: true, max_plans: 200, explain: false, relax: false, ..Options::default() };
+        let list = |network: &Network| kirk::plan(network, &options, &mut Unlimited);
+        let all = list(&plain);
+        if mission.fleet < 2 || all.status != Status::Plan {
+            continue;
+        }
+        let listed = list(&network);
+        if scenario.contains("S[") || scenario.contains("in sequence") {
+            // What differs is told apart by the text, or by who is first.
+            if scenario.contains("S[") && !scenario.contains("in sequence") && mission.fleet == 2 {
+                named += 1;
+                assert_eq!(listed.plans.len(), all.plans.len(), "mission {seed}:\n{text}");
+            }
+            continue;
+        }
+        let one = |plan: &Plan, order: &[usize]| {
+            done(&network, plan, &|name| {
+                let mut name = name.to_owned();
+                for (from, to) in order.iter().enumerate() {
+                    name = name.replace(&format!("S[{}]", from + 1), &format!("S<{}>", to + 1));
+                }
+                name.replace('<', "[").replace('>', "]")
+            })
+        };
+        let orders = permutations(mission.fleet);
+        let least = |plan: &Plan| orders.iter().map(|order| one(plan, order)).min();
+        let mut distinct: Vec<Vec<String>> = all.plans.iter().map(|plan| one(plan, &[])).collect();
+        distinct.sort();
+        distinct.dedup();
+        let is_told_by_calls = distinct.len() == all.plans.len();
+        let classes = |plans: &[Plan]| plans.iter().filter_map(least).collect::<BTreeSet<_>>();
+        assert_eq!(classes(&listed.plans), classes(&all.plans), "mission {seed}:\n{text}");
+        if is_told_by_calls {
+            exchanged += 1;
+            fewer += u32::from(listed.plans.len() < all.plans.len());
+            assert_eq!(listed.plans.len(), classes(&all.plans).len(), "mission {seed}:\n{text}");
+        }
+    }
+    assert!(exchanged > 200 && fewer > 20 && named > 20, "{exchanged} {fewer} {named}");
+}
+
+/// Plans of three rovers, by what the scenario says: how many there are, and the first one's choices.
+#[test]
+fn exchanged_vehicles_make_no_other_plan() {
+    let cases: [(&str, usize, &[u32]); 7] = [
+        ("any r in S { Work(r) }; any r in S { Work(r) }", 2, &[0, 0]),
+        ("any r in S { Work(r) }, any r in S { Work(r) }, any r in S { Work(r) }", 5, &[0, 0, 0]),
+        ("each r in S { choose { Work(r), Rest(r) } }", 4, &[0, 0, 0]),
+        ("each r in S unordered { Work(r) }", 1, &[]),
+        ("each r in S { Turn(r) }", 1, &[]),
+        ("each r in S in sequence { choose { Work(r), Rest(r) } }", 8, &[0, 0, 0]),
+        // The mission names the second one, so only the others are equal.
+        ("any r in S { Work(r) }; Rest(S[2])", 2, &[0]),
+    ];
+    for (scenario, count, first) in cases {
+        let text = format!(
+            "location BASE (0, 0); model Scout extends ATRV {{ state drill : {{IN, OUT}} = IN; }}
+             vehicle S[1..3] : Scout at BASE; state ARM : {{FREE, BUSY}} = FREE;
+             primitive Work(r)[1,2] requires r.drill=IN; primitive Rest(r : vehicle)[1,2];
+             primitive Turn(r)[1,2] requires at start ARM=FREE sets ARM=FREE requires r.drill=IN;
+             scenario Day[0,90] = {{ {scenario} }}"
+        );
+        let network = network(&text);
+        let options = Options { all: true, ..Options::default() };
+        let all = kirk::plan(&network, &options, &mut Unlimited);
+        assert_eq!(all.plans.len(), count, "{scenario}");
+        let choices: Vec<u32> = all.plans[0].choices.iter().map(|choice| choice.alternative).collect();
+        assert_eq!(choices, first, "{scenario}");
+        if !first.is_empty() {
+            let best = kirk::plan(&network, &Options { best: 20, ..Options::default() }, &mut Unlimited);
+            assert_eq!(best.plans.len(), count, "{scenario}");
+        }
+    }
+}
+
+/// Of equally good plans that differ in exchanged vehicles, the one is returned whose alternatives come first.
+#[test]
+fn the_first_alternatives_are_the_plan() {
+    let text = "location BASE (0, 0); vehicle S[1..3] : ATRV at BASE;
+         primitive Work(r : vehicle)[4,4] uses r.arm; model Scout extends ATRV { resource arm; }
+         scenario Day[0,90] = { each site in Sites { any r in S { Work(r) } } }
+         location A (1, 1); location B (2, 2); location C (3, 3); group Sites = A, B, C;
+         objective minimize end;"
+        .replace("S[1..3] : ATRV", "S[1..3] : Scout");
+    let plan = first_plan(&network(&text), Search::ConflictDirected).plans.remove(0);
+    let choices: Vec<u32> = plan.choices.iter().map(|choice| choice.alternative).collect();
+    assert_eq!((choices, plan.quality.is_optimal), (vec![0, 1, 2], Some(true)));
 }
 
 /// Twenty rovers whose batteries last for four sites each, and sixty sites.

@@ -58,7 +58,7 @@ fn search(
     if is_by_solver(model, options, excluded) {
         solver_search::search(network, model, options, excluded, termination)
     } else {
-        chronological::search(model, options, excluded, termination)
+        chronological::search(network, model, options, excluded, termination)
     }
 }
 

@@ -9,7 +9,9 @@ use std::collections::BTreeSet;
 
 use exact::Bound;
 use stn::{Checkpoint, Inconsistency, PointId, Stn, Tag};
-use tpn::{ArcId, CausalLink, Choice, DecisionId, DistinctPlans, LabelId, NodeId, Ordering, Plan, Window};
+use tpn::{
+    ArcId, CausalLink, Choice, DecisionId, DistinctPlans, LabelId, Network, NodeId, Ordering, Plan, Window,
+};
 use typed_index_collections::TiVec;
 
 use crate::model::{INFINITE, Model, ModelArc, UNBOUNDED_BELOW, node, point};
@@ -20,13 +22,14 @@ use crate::unplannable::Unplannable;
 
 /// The plans of a network as the paper's search finds them, but for those that make all of some excluded choices.
 pub(crate) fn search(
+    network: &Network,
     model: &Model,
     options: &Options,
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
     let mut search = ChronologicalSearch::new(model, options);
-    let mut plans = DistinctPlans::default();
+    let mut plans = DistinctPlans::new(network);
     let mut is_found = search.begin()?;
     let status = loop {
         is_found = is_found && search.next_solution(termination)?;

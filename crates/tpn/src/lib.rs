@@ -6,6 +6,7 @@ mod alternative;
 pub mod call_names;
 mod calls;
 pub mod compile;
+pub mod exchange;
 pub mod families;
 pub mod generate;
 pub mod network;

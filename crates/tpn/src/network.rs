@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::call_names::NamesOnDemand;
+use crate::exchange::Exchangeable;
 use crate::sight::Sight;
 
 macro_rules! id {
@@ -113,6 +114,9 @@ pub struct Network {
     /// What plans have to withstand of durations that the environment chooses.
     #[serde(default)]
     pub controllability: Controllability,
+    /// Which vehicles can be exchanged, and what they are exchanged in.
+    #[serde(default)]
+    pub exchangeable: Exchangeable,
     /// What people read for its calls.
     #[serde(skip)]
     pub names: NamesOnDemand,

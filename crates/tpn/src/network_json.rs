@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
 use crate::call_names::NamesOnDemand;
+use crate::exchange::Exchangeable;
 use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
     NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Supply, Use, Variable, Worth,
@@ -224,6 +225,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         end,
         threat_gap,
         controllability,
+        exchangeable: Exchangeable::default(),
         names: NamesOnDemand::default(),
     })
 }

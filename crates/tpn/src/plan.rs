@@ -2,6 +2,7 @@
 //!
 //! The planner makes it and the checker reads it; neither's code is here.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
@@ -9,6 +10,7 @@ use exact::{Bound, Rational, Time};
 use rmpl::program::LabelMode;
 use serde::{Deserialize, Serialize};
 
+use crate::exchange::{Distinction, Exchanges};
 use crate::network::{
     ArcId, DecisionId, EventRef, Extent, LabelId, Network, NodeId, Supply, UseId, VariableId,
 };
@@ -236,15 +238,22 @@ pub struct StateOrder {
     pub producers: Vec<LabelId>,
 }
 
-/// Plans of one network, each once, in the order in which they were found.
+/// Plans of one network, each once, in the order in which they were found. Of those that differ only in which of several
+/// interchangeable vehicles does what, it is the one whose alternatives come first.
 #[derive(Clone, Debug, Default)]
 pub struct DistinctPlans {
+    exchanges: Exchanges,
     plans: Vec<Plan>,
     /// Their places, by what tells them apart.
-    sorted: Vec<usize>,
+    places: BTreeMap<Distinction, usize>,
 }
 
 impl DistinctPlans {
+    /// No plans of a network yet.
+    pub fn new(network: &Network) -> Self {
+        Self { exchanges: Exchanges::new(network), plans: Vec::new(), places: BTreeMap::new() }
+    }
+
     /// Each plan once.
     pub fn plans(&self) -> &[Plan] {
         &self.plans
@@ -252,12 +261,20 @@ impl DistinctPlans {
 
     /// Adds a plan. Returns whether it is none of those that are there.
     pub fn insert(&mut self, plan: Plan) -> bool {
-        let place = self.sorted.binary_search_by(|&at| self.plans[at].identity().cmp(&plan.identity()));
-        if let Err(place) = place {
-            self.sorted.insert(place, self.plans.len());
-            self.plans.push(plan);
+        match self.places.entry(self.exchanges.least(&plan)) {
+            Entry::Vacant(place) => {
+                place.insert(self.plans.len());
+                self.plans.push(plan);
+                true
+            }
+            Entry::Occupied(place) => {
+                let known = &mut self.plans[*place.get()];
+                if plan.choices < known.choices {
+                    *known = plan;
+                }
+                false
+            }
         }
-        place.is_err()
     }
 
     /// The plans by themselves.
@@ -389,7 +406,7 @@ mod tests {
         let mut chosen = first.clone();
         chosen.choices.push(Choice { decision: DecisionId::from_index(0), alternative: 1 });
         assert!(first.is_same(&ordered) && !first.is_same(&chosen));
-        let mut plans = DistinctPlans::default();
+        let mut plans = DistinctPlans::new(&network);
         let inserted = [&chosen, &first, &ordered, &chosen].map(|plan| plans.insert(plan.clone()));
         assert_eq!(inserted, [true, true, false, false]);
         assert_eq!(plans.into_plans(), [chosen, first]);

@@ -49,6 +49,7 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
         end,
         threat_gap,
         controllability: Controllability::Dynamic,
+        exchangeable: tpn::exchange::Exchangeable::default(),
         names: tpn::call_names::NamesOnDemand::default(),
     };
     link(&mut network);

@@ -7,8 +7,12 @@
 
 mod best_first;
 
+use std::collections::BTreeSet;
+
 use exact::Rational;
-use tpn::{Choice, DistinctPlans, LabelId, Network, Plan, StateOrder};
+use tpn::exchange::Exchanges;
+use tpn::{Choice, DecisionId, DistinctPlans, LabelId, Network, Plan, StateOrder};
+use typed_index_collections::TiVec;
 
 use crate::choices::Choices;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
@@ -32,6 +36,9 @@ const CONFLICTS_NEAR: u64 = 100;
 
 /// How many conflicts it may take to find out that choices that were a plan still are.
 const MAX_CONFLICTS_TO_KEEP: u64 = 500;
+
+/// How many conflicts it may take to find a plan that differs from another one in exchanged vehicles.
+const MAX_CONFLICTS_TO_EXCHANGE: u64 = 2_000;
 
 /// Whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
 pub(crate) fn has_demands(model: &Model) -> bool {
@@ -227,7 +234,7 @@ impl<'a> Searching<'a> {
     }
 
     /// Continues with the record in a solver that begins to search within these limits.
-    fn begin_record(&mut self, attempt: &mut Attempt<'a>, limits: &Limits) {
+    fn begin_record(&mut self, attempt: &mut Attempt<'_>, limits: &Limits) {
         let Some(record) = self.record.take() else { return };
         let goals = self.model.demands.goals.iter().zip(limits);
         let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
@@ -248,12 +255,12 @@ impl<'a> Searching<'a> {
     }
 
     /// A problem that is new to its solver, with what this search asks for beside the network.
-    fn attempt(
+    fn attempt<'part>(
         &self,
-        (problem, mut solver): (Problem<'a>, Solver),
+        (problem, mut solver): (Problem<'part>, Solver),
         limits: &Limits,
         is_in_order: bool,
-    ) -> Result<Attempt<'a>, Unencoded> {
+    ) -> Result<Attempt<'part>, Unencoded> {
         solver.is_in_textual_order = is_in_order;
         for choices in &self.excluded {
             problem.forbid_choices(&mut solver, choices);
@@ -264,7 +271,7 @@ impl<'a> Searching<'a> {
     }
 
     /// Adds a limit on each goal that has one, and prefers the best plan's choices.
-    fn add_limits(&self, attempt: &mut Attempt<'a>, limits: &Limits) -> Result<(), Unencoded> {
+    fn add_limits(&self, attempt: &mut Attempt<'_>, limits: &Limits) -> Result<(), Unencoded> {
         let Attempt { problem, solver, sums } = attempt;
         if let Some(incumbent) = &self.incumbent {
             problem.prefer(solver, incumbent);
@@ -339,9 +346,22 @@ impl<'a> Searching<'a> {
     /// So many plans that differ in their choices, the best first.
     fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
         let mut plans: Vec<Plan> = Vec::new();
+        let exchanges = Exchanges::new(self.network);
+        let mut found = BTreeSet::new();
         while plans.len() < count.max(1) && !self.is_stopped {
             let plan = if self.model.demands.goals.is_empty() { self.first()? } else { self.best()? };
             let Some(plan) = plan else { break };
+            let choices = exchanges.least(&plan).choices;
+            let plan = if found.contains(&choices) {
+                self.excluded.push(plan.choices);
+                continue;
+            } else if plan.choices == choices {
+                plan
+            } else {
+                self.excluded.push(plan.choices.clone());
+                self.exchanged(plan, &choices)?
+            };
+            found.insert(choices);
             if let Some(record) = &mut self.record {
                 record.tell_plan(plans.len() as u32);
             }
@@ -376,6 +396,32 @@ impl<'a> Searching<'a> {
         Ok(None)
     }
 
+    /// A plan that makes these choices, which differ from another plan's in which of several interchangeable vehicles does what,
+    /// and is no worse. The other plan if there is none, such as where places in a formation are not equally far.
+    fn exchanged(&mut self, plan: Plan, choices: &[Choice]) -> Result<Plan, Unplannable> {
+        let model = self.model;
+        let values = model.demands.goals.iter().map(|goal| goal.sum(model, &plan).map(Some));
+        let limits: Limits = values.collect::<Result<_, Unplannable>>()?;
+        let mut given: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
+        for choice in choices {
+            given[choice.decision] = Some(choice.alternative);
+        }
+        self.incumbent = None;
+        let part = Part { alternatives: Some(&given), ..Part::default() };
+        let (termination, stats) = (&mut self.termination, &self.stats);
+        let encoded = Problem::new(model, part, &mut || termination.should_stop(stats));
+        let Ok(mut attempt) = encoded.and_then(|encoded| self.attempt(encoded, &limits, false)) else {
+            return Ok(plan);
+        };
+        self.begin_record(&mut attempt, &limits);
+        let search = (&mut attempt.problem, &mut attempt.solver);
+        let next = self.next_plan(search, &limits, Some(MAX_CONFLICTS_TO_EXCHANGE))?;
+        self.record = attempt.solver.record.take();
+        let Next::Plan(mut exchanged) = next else { return Ok(plan) };
+        exchanged.quality.is_optimal = plan.quality.is_optimal;
+        Ok(*exchanged)
+    }
+
     /// Every plan that differs in its choices, its links, or the order of what excludes each other.
     fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
         let attempt = self.recorded_problem(&Vec::new(), true, Touching::Where)?;
@@ -393,7 +439,7 @@ impl<'a> Searching<'a> {
             Err(_) => return Err(Unplannable::Links),
         }
         solver.record_choice_points(&problem);
-        let mut plans = DistinctPlans::default();
+        let mut plans = DistinctPlans::new(self.network);
         let is_complete = loop {
             let plan = match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {
                 Next::Stopped => break false,

@@ -40,6 +40,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         end: NodeId(node_count as u32 - 1),
         threat_gap: Time::ONE,
         controllability: rmpl::program::Controllability::default(),
+        exchangeable: tpn::exchange::Exchangeable::default(),
         names: tpn::call_names::NamesOnDemand::default(),
     }
 }

@@ -1,6 +1,6 @@
 //! The network while it grows: nodes, arcs reserved before their ends are known, and the last pass that links them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::Span;
 use rmpl::program::{LabelMode, Options};
@@ -9,6 +9,7 @@ use smol_str::SmolStr;
 use super::bounds::Interval;
 use super::names::{Fact, Vocabulary};
 use crate::call_names::NamesOnDemand;
+use crate::exchange::Exchangeable;
 use crate::network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Extent, Goal,
     Label, LabelId, Network, Node, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use,
@@ -46,7 +47,9 @@ pub(super) struct Builder {
     pub(super) resources: Vec<Resource>,
     pub(super) uses: Vec<Use>,
     pub(super) worths: Vec<Worth>,
-    counts: std::collections::BTreeMap<SmolStr, u32>,
+    counts: BTreeMap<SmolStr, u32>,
+    /// Blocks whose parts are copies of one statement, with the member of a group that each is for.
+    pub(super) copies: BTreeMap<BlockId, Vec<SmolStr>>,
 }
 
 /// Stands for an end of a reserved arc that is not known yet.
@@ -288,6 +291,7 @@ impl Builder {
             end: root.end,
             threat_gap: options.threat_gap,
             controllability: options.controllability,
+            exchangeable: Exchangeable { vehicles: Vec::new(), copies: self.copies },
             names: NamesOnDemand::default(),
         }
     }

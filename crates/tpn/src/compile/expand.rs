@@ -182,14 +182,18 @@ impl<'program> Expander<'program> {
             names.iter().map(|member| scope.with_member(&members.variable.text, member)).collect();
         let copy = |scope| Branch { statement: &members.body, scope, is_copy: true };
         let branches: Vec<Branch<'program, '_>> = scopes.iter().map(copy).collect();
-        match (members.form, branches.as_slice()) {
+        let piece = match (members.form, branches.as_slice()) {
             (MembersForm::Any, branches) => self.choose(branches, span, entry),
             (MembersForm::Unordered, branches) => self.unordered(branches, span, entry),
             // One member has no one beside it.
             (MembersForm::Parallel, [only]) => self.branch(only, entry),
             (MembersForm::Parallel, branches) => self.parallel(branches, span, entry),
             (MembersForm::Sequence, branches) => self.sequence(branches.iter().copied(), span, entry),
+        };
+        if names.len() > 1 {
+            self.builder.copies.insert(piece.block, names.to_vec());
         }
+        piece
     }
 
     /// One of several statements. In copies of one statement, names are those of the copy.

@@ -11,6 +11,7 @@ use super::build::{Builder, Root};
 use super::constants::Constants;
 use super::constraint::Named;
 use super::ground::Ground;
+use super::interchangeable::interchangeable;
 use super::names::Vocabulary;
 use super::scope::Scope;
 use crate::network::{ArcId, ArcKind, BlockId, Network, NodeId, OccurrenceId, ResourceId};
@@ -146,9 +147,12 @@ impl<'program> Expander<'program> {
 
     pub(super) fn finish(self, root: Option<Root>) -> (Option<Network>, Vec<Diagnostic>) {
         let objective = self.objective();
-        let network = root
+        let mut network = root
             .filter(|_| !self.is_cut_off)
             .map(|root| self.builder.finish(&self.vocabulary, &root, &self.program.options, objective));
+        if let Some(network) = network.as_mut().filter(|network| !network.exchangeable.copies.is_empty()) {
+            network.exchangeable.vehicles = interchangeable(self.program, &self.groups);
+        }
         (network, self.diagnostics)
     }
 }

@@ -14,6 +14,7 @@ mod exogenous;
 mod expand;
 mod expander;
 mod ground;
+mod interchangeable;
 mod names;
 mod resource;
 mod scope;
