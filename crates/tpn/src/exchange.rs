@@ -104,7 +104,7 @@ impl Exchange {
             let places = places(network, (from, to), (one, other))?;
             match (&network.blocks[from.index()].kind, &network.blocks[to.index()].kind) {
                 (BlockKind::Leaf { arc }, BlockKind::Leaf { arc: image }) => {
-                    exchange.add(network, *arc, *image)
+                    exchange.add(network, *arc, *image);
                 }
                 (BlockKind::Sequence { children }, BlockKind::Sequence { children: images }) => {
                     // Who is first in a sequence is not exchanged.

@@ -73,7 +73,13 @@ impl ManualState {
         window: &mut Window,
     ) {
         match command {
-            ManualCommand::Open(page, section) => self.open(page, section),
+            ManualCommand::Open(page, section) => {
+                self.open(page, section);
+                // Who follows a link with the keyboard reads on there.
+                window.turn_to(PanelKind::Manual);
+                window.focus_panel(PanelKind::Manual);
+                return;
+            }
             ManualCommand::About(panel) => {
                 let (page, section) = about_text.unwrap_or_else(|| (panel.manual(), String::new()));
                 self.open(page, section);

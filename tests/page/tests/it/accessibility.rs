@@ -95,6 +95,19 @@ fn a_key_is_heard_and_its_outcome_told_while_nothing_has_the_focus() -> Result<(
     Ok(())
 }
 
+/// Who follows a link to a term with the keyboard reads on in the manual.
+#[test]
+fn a_page_of_the_manual_that_is_opened_has_the_keyboard() -> Result<()> {
+    let page = Opened::with_fragment("lesson=choices&stop=4")?;
+    page.settle()?;
+    page.tab.evaluate("enroute.dispatch('help.page', { page: 'glossary' })")?;
+    page.tab.wait_until(
+        "document.getElementById(document.activeElement?.getAttribute('aria-activedescendant'))
+            ?.getAttribute('aria-label')?.includes('Manual')",
+    )?;
+    Ok(())
+}
+
 #[test]
 fn everything_that_takes_input_has_a_name() -> Result<()> {
     let page = Opened::planned()?;
