@@ -11,6 +11,9 @@ use crate::plan::{CausalLink, Choice, Ordering, Plan};
 /// So many interchangeable vehicles are exchanged in all pairs, more of them only with their neighbors.
 const MAX_IN_PAIRS: usize = 8;
 
+/// So many blocks are looked at for all exchanges together; none are exchanged after that.
+const MAX_BLOCKS: usize = 5_000_000;
+
 /// What a network is made of that vehicles can be exchanged in.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exchangeable {
@@ -29,8 +32,8 @@ pub struct Exchanges {
 /// What two vehicles that are exchanged do to each part of a network.
 #[derive(Clone, Debug)]
 struct Exchange {
-    /// The decision that each becomes, and its alternatives by those of the former.
-    decisions: BTreeMap<DecisionId, (DecisionId, Vec<u32>)>,
+    /// The decision that each becomes, if it changes, and the alternatives that change their places.
+    decisions: BTreeMap<DecisionId, (DecisionId, Vec<(u32, u32)>)>,
     /// Labels that become others.
     labels: BTreeMap<LabelId, LabelId>,
 }
@@ -48,25 +51,22 @@ pub struct Distinction {
 impl Exchanges {
     /// The exchanges of a network's interchangeable vehicles.
     pub fn new(network: &Network) -> Self {
-        let mut exchanges = Vec::new();
-        for vehicles in &network.exchangeable.vehicles {
-            for (at, one) in vehicles.iter().enumerate() {
+        let pairs = network.exchangeable.vehicles.iter().flat_map(|vehicles| {
+            vehicles.iter().enumerate().flat_map(|(at, one)| {
                 let others = if vehicles.len() <= MAX_IN_PAIRS { vehicles.len() } else { at + 2 };
-                let others = vehicles.iter().take(others).skip(at + 1);
-                exchanges.extend(others.filter_map(|other| Exchange::new(network, one, other)));
-            }
-        }
-        Self { exchanges }
+                vehicles.iter().take(others).skip(at + 1).map(move |other| (one, other))
+            })
+        });
+        let most = MAX_BLOCKS / network.blocks.len().max(1);
+        let exchanges = pairs.take(most).filter_map(|(one, other)| Exchange::new(network, one, other));
+        Self { exchanges: exchanges.collect() }
     }
 
     /// What tells a plan apart from those that differ in more than exchanged vehicles: the least that exchanging vehicles
     /// leads to.
     pub fn least(&self, plan: &Plan) -> Distinction {
         let mut least = Distinction::of(plan);
-        while let Some(lesser) = self.exchanges.iter().find_map(|exchange| {
-            let exchanged = exchange.apply(&least);
-            (exchanged < least).then_some(exchanged)
-        }) {
+        while let Some(lesser) = self.exchanges.iter().find_map(|exchange| exchange.lesser(&least)) {
             least = lesser;
         }
         least
@@ -119,7 +119,11 @@ impl Exchange {
                     BlockKind::Choose { decision: image, alternatives: images },
                 ) => {
                     open.extend(paired(alternatives, images, &places)?);
-                    exchange.decisions.insert(*decision, (*image, places));
+                    let moved: Vec<(u32, u32)> =
+                        (0..).zip(places).filter(|(place, image)| place != image).collect();
+                    if decision != image || !moved.is_empty() {
+                        exchange.decisions.insert(*decision, (*image, moved));
+                    }
                 }
                 (
                     BlockKind::Scope { child, arcs, .. },
@@ -147,17 +151,22 @@ impl Exchange {
         }
     }
 
-    fn apply(&self, plan: &Distinction) -> Distinction {
-        let label = |label: LabelId| self.labels.get(&label).copied().unwrap_or(label);
-        let choice = |choice: &Choice| match self.decisions.get(&choice.decision) {
-            Some((decision, places)) => Choice {
-                decision: *decision,
-                alternative: places.get(choice.alternative as usize).copied().unwrap_or(choice.alternative),
-            },
-            None => *choice,
+    /// What tells the plan with exchanged vehicles apart, if that is less.
+    fn lesser(&self, plan: &Distinction) -> Option<Distinction> {
+        let choice = |choice: &Choice| {
+            let Some((decision, moved)) = self.decisions.get(&choice.decision) else { return *choice };
+            let place = moved.iter().find(|(place, _)| *place == choice.alternative);
+            Choice { decision: *decision, alternative: place.map_or(choice.alternative, |(_, image)| *image) }
         };
-        Distinction {
-            choices: plan.choices.iter().map(choice).collect(),
+        let mut choices: Vec<Choice> = plan.choices.iter().map(choice).collect();
+        choices.sort_unstable();
+        // Most exchanges make the choices greater.
+        if choices > plan.choices {
+            return None;
+        }
+        let label = |label: LabelId| self.labels.get(&label).copied().unwrap_or(label);
+        let exchanged = Distinction {
+            choices,
             links: (plan.links.iter())
                 .map(|link| CausalLink { tell: label(link.tell), ask: label(link.ask) })
                 .collect(),
@@ -168,7 +177,8 @@ impl Exchange {
                 .map(|producers| producers.iter().map(|&it| label(it)).collect())
                 .collect(),
         }
-        .sorted()
+        .sorted();
+        (exchanged < *plan).then_some(exchanged)
     }
 }
 
@@ -199,13 +209,14 @@ fn places(network: &Network, (from, to): (BlockId, BlockId), (one, other): (&str
     match (copies.get(&from), copies.get(&to)) {
         (None, None) => Some((0..parts as u32).collect()),
         (Some(members), Some(images)) => {
+            let places: BTreeMap<&str, u32> = images.iter().map(SmolStr::as_str).zip(0..).collect();
             let place = |member: &SmolStr| {
                 let image = match member.as_str() {
                     it if it == one => other,
                     it if it == other => one,
                     it => it,
                 };
-                images.iter().position(|it| it == image).map(|at| at as u32)
+                places.get(image).copied()
             };
             members.iter().map(place).collect()
         }

@@ -396,8 +396,8 @@ impl<'a> Searching<'a> {
         Ok(None)
     }
 
-    /// A plan that makes these choices, which differ from another plan's in which of several interchangeable vehicles does what,
-    /// and is no worse. The other plan if there is none, such as where places in a formation are not equally far.
+    /// Returns a plan with these choices that is no worse than `plan`. They differ from those of `plan` in which of several
+    /// interchangeable vehicles does what. Returns `plan` if there is none, for example because some spots are farther away.
     fn exchanged(&mut self, plan: Plan, choices: &[Choice]) -> Result<Plan, Unplannable> {
         let model = self.model;
         let values = model.demands.goals.iter().map(|goal| goal.sum(model, &plan).map(Some));

@@ -24,12 +24,13 @@ pub(super) fn interchangeable(program: &Program, groups: &Groups) -> Vec<Vec<Smo
         }
     }
     let named = named(program);
-    let mut alike: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+    let mut equipment = equipment(program);
+    let mut alike: BTreeMap<_, BTreeSet<&str>> = BTreeMap::new();
     for vehicle in &program.world.vehicles {
         let name = vehicle.name.text.as_str();
         let Some(member_of) = member_of.get(name).filter(|_| !named.contains(name)) else { continue };
-        let key = (&vehicle.model.text, &vehicle.start.text, member_of, equipment(program, name));
-        alike.entry(Value::from(format!("{key:?}")).to_string()).or_default().insert(name);
+        let own = equipment.remove(name).unwrap_or_default();
+        alike.entry((&vehicle.model.text, &vehicle.start.text, member_of, own)).or_default().insert(name);
     }
     let alike = alike.into_values().filter(|vehicles| vehicles.len() > 1);
     let in_order = |vehicles: BTreeSet<&str>| {
@@ -42,28 +43,34 @@ pub(super) fn interchangeable(program: &Program, groups: &Groups) -> Vec<Vec<Smo
     alike.filter_map(in_order).collect()
 }
 
-/// What a vehicle has of its own, without its name.
-fn equipment(program: &Program, vehicle: &str) -> Vec<Value> {
-    let own = |name: &str| name.strip_prefix(vehicle)?.strip_prefix('.').map(Value::from);
-    let resources = program.resources.iter().filter_map(|resource| {
-        let mut described = serde_json::to_value(resource).ok()?;
-        described["name"] = own(&resource.name.text)?;
-        Some(described)
-    });
-    let states = program.variables.iter().filter_map(|variable| {
-        let mut described = serde_json::to_value(variable).ok()?;
-        described["name"] = own(&variable.name.text)?;
-        Some(described)
-    });
-    resources.chain(states).collect()
+/// What each vehicle has of its own, without its name, as text.
+fn equipment(program: &Program) -> BTreeMap<&str, Vec<String>> {
+    let vehicles = vehicles(program);
+    let mut equipment: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    let mut add = |name: &'_ SmolStr, described: serde_json::Result<Value>| {
+        let (Some((vehicle, own)), Ok(mut described)) = (name.split_once('.'), described) else { return };
+        if let Some(&vehicle) = vehicles.get(vehicle) {
+            described["name"] = own.into();
+            equipment.entry(vehicle).or_default().push(described.to_string());
+        }
+    };
+    for resource in &program.resources {
+        add(&resource.name.text, serde_json::to_value(resource));
+    }
+    for variable in &program.variables {
+        add(&variable.name.text, serde_json::to_value(variable));
+    }
+    equipment
+}
+
+fn vehicles(program: &Program) -> BTreeSet<&str> {
+    program.world.vehicles.iter().map(|vehicle| vehicle.name.text.as_str()).collect()
 }
 
 /// All names in a mission but in declarations of vehicles, their equipment, fleets and groups.
 fn named(program: &Program) -> BTreeSet<SmolStr> {
-    let is_own = |name: &str| {
-        let vehicle = name.split_once('.').map(|(vehicle, _)| vehicle);
-        vehicle.is_some_and(|vehicle| program.world.vehicles.iter().any(|it| it.name.text == vehicle))
-    };
+    let vehicles = vehicles(program);
+    let is_own = |name: &str| name.split_once('.').is_some_and(|(vehicle, _)| vehicles.contains(vehicle));
     let mut rest = program.clone();
     rest.world.vehicles.clear();
     rest.fleets.clear();
