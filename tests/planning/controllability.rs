@@ -69,7 +69,7 @@ fn add_arc(network: &mut Network, from: usize, to: usize, (lower, upper): (i64, 
     network.nodes[to].in_arcs.push(id);
 }
 
-/// Whether nothing that can happen breaks the plan, whatever else is wrong with it.
+/// Returns whether nothing that can happen breaks the plan, whatever else is wrong with it.
 fn is_kept(network: &Network, plan: &Plan) -> bool {
     let verdict = check_plan(network, plan);
     !verdict.violations.iter().any(|it| matches!(it.rule, Rule::Temporal | Rule::Controllability))

@@ -58,13 +58,13 @@ const TELLING: [(&str, Has); 10] = [
     ("because ground line near sight", |it| !it.sights.is_empty()),
 ];
 
-/// Whether two conditions, of those that count, exclude each other.
+/// Returns whether two conditions, of those that count, exclude each other.
 fn has_conflict(network: &Network, counts: impl Fn(LabelId) -> bool) -> bool {
     let labels = || (0..network.labels.len()).map(LabelId::from_index).filter(|&label| counts(label));
     labels().any(|one| labels().any(|other| network.conflict(one, other)))
 }
 
-/// Whether what needs a time needs more than what it is held against allows.
+/// Returns whether what needs a time needs more than what it is held against allows.
 fn adds_up(sentence: &str) -> bool {
     let Some((needs, allows)) = sentence.split_once(", but ") else { return true };
     let number = |words: &str| words.rsplit(' ').next().and_then(|word| word.parse::<f64>().ok());
@@ -78,8 +78,8 @@ fn adds_up(sentence: &str) -> bool {
     }
 }
 
-/// How many bounds a sentence says to need time: `MODE=A (2 times), 2 delays and a gap of 1` are five. Nothing if it does
-/// not name them all, or says what needs time in other words.
+/// Returns how many bounds a sentence says to need time: `MODE=A (2 times), 2 delays and a gap of 1` are five. Nothing
+/// if it does not name them all, or says what needs time in other words.
 fn told_needs(sentence: &str) -> Option<usize> {
     let (before, _) = sentence.split_once(" at least ")?;
     let names = before.strip_suffix(" need").or(before.strip_suffix(" needs"))?;
@@ -155,7 +155,7 @@ fn whoever_adds_up_what_a_failure_names_has_left_out_nothing() {
     assert!(told > 1_000 && several > 100, "{told} failures, {several} with several of one name");
 }
 
-/// What a sentence says that is not of the mission.
+/// Returns what a sentence says that is not of the mission.
 fn strangers<'a>(network: &Network, text: &str, sentence: &'a str) -> Vec<&'a str> {
     // `MODE_A` is another way to write `MODE=A`.
     let own: BTreeSet<&str> = words(text).flat_map(|word| word.split('_').chain([word])).collect();

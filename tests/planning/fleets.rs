@@ -257,8 +257,8 @@ fn a_fleet_means_what_its_vehicles_written_out_mean() {
     assert!(planned > 100 && failed > 50, "{planned} {failed}");
 }
 
-/// What a plan does, and which vehicles do it: calls and links by where they are written, with their arguments, where vehicles
-/// are exchanged.
+/// Returns what a plan does, and which vehicles do it: calls and links by where they are written, with their arguments,
+/// where vehicles are exchanged.
 fn done(network: &Network, plan: &Plan, exchanged: &dyn Fn(&str) -> String) -> Vec<String> {
     let call = |occurrence: &Occurrence| {
         let arguments: Vec<String> = occurrence.arguments.iter().map(|it| exchanged(it)).collect();

@@ -127,7 +127,7 @@ fn compare_all_with(kind: Kind, change: fn(&mut Network, u64)) -> Tally {
     tally
 }
 
-/// How many plans the mission has, if the reference finishes and both searches agree with it.
+/// Returns how many plans the mission has, if the reference finishes and both searches agree with it.
 fn compare(text: &str, change: impl Fn(&mut Network)) -> Result<Option<u64>, String> {
     let (network, diagnostics) = compile(text, &Top::Scenario(None));
     let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
@@ -160,7 +160,7 @@ fn compare(text: &str, change: impl Fn(&mut Network)) -> Result<Option<u64>, Str
     Ok(Some(answer.plans.len() as u64))
 }
 
-/// What makes a plan distinct.
+/// Returns what makes a plan distinct.
 fn key(network: &Network, plan: &Plan) -> Key {
     let mut key = Key {
         choices: plan.choices.iter().map(|it| (it.decision.0, it.alternative)).collect(),
@@ -185,7 +185,7 @@ pub(crate) fn sides(network: &Network, plan: &Plan) -> Vec<(u32, u32)> {
     sides
 }
 
-/// How many plans a text has.
+/// Returns how many plans a text has.
 fn count(text: &str) -> usize {
     search(&network(text), Limits { schedules: 1_000_000, ..LIMITS }).expect("it is small").plans.len()
 }

@@ -146,7 +146,7 @@ fn evaluate(goal: &str, plan: &Value, end: &Value) -> Result<f64, String> {
     Ok(sum)
 }
 
-/// Whether two JSON numbers, or infinities, are equal: 13 and 13.0 are.
+/// Returns whether two JSON numbers, or infinities, are equal: 13 and 13.0 are.
 fn same(one: &Value, other: &Value) -> bool {
     one == other || one.as_f64().is_some_and(|one| other.as_f64() == Some(one))
 }

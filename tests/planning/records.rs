@@ -218,7 +218,7 @@ fn check_learned(network: &Network, trace: &Trace, addition: Addition, told: &st
     learned
 }
 
-/// Whether some schedule of a plan makes these choices, or all of them where the environment has a say.
+/// Returns whether some schedule of a plan makes these choices, or all of them where the environment has a say.
 fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &SearchRound, all: bool) -> bool {
     let mut stn = Stn::new(network.nodes.len());
     let arcs = network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected);
@@ -273,7 +273,7 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
     is_made && has_order(stn.schedule(), &before)
 }
 
-/// Whether what happens at one time has an order.
+/// Returns whether what happens at one time has an order.
 fn has_order(times: &[i64], before: &[(NodeId, NodeId)]) -> bool {
     let mut left: Vec<(NodeId, NodeId)> = before.to_vec();
     left.retain(|(earlier, later)| earlier != later && times[earlier.index()] == times[later.index()]);
@@ -288,7 +288,7 @@ fn has_order(times: &[i64], before: &[(NodeId, NodeId)]) -> bool {
     }
 }
 
-/// Whether one event is before another in some schedule, which is then kept, or in all.
+/// Returns whether one event is before another in some schedule, which is then kept, or in all.
 fn keeps(stn: &mut Stn, earlier: NodeId, later: NodeId, all: bool) -> bool {
     if all {
         return stn.admits(PointId(earlier.0), PointId(later.0), -1, 0).is_err();

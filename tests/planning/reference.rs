@@ -143,7 +143,7 @@ struct Compared {
     has_other_first: bool,
 }
 
-/// What the mission is like, if the reference finishes and both searches agree with it.
+/// Returns what the mission is like, if the reference finishes and both searches agree with it.
 fn compare(text: &str, gap: Time) -> Result<Option<Compared>, String> {
     let (network, diagnostics) = compile(text, &Top::Scenario(None));
     let mut network = network.ok_or_else(|| format!("does not compile: {diagnostics:?}\n{text}"))?;
@@ -195,7 +195,7 @@ fn compare(text: &str, gap: Time) -> Result<Option<Compared>, String> {
     }))
 }
 
-/// Whether an interval must begin at the very time at which one that excludes it ends.
+/// Returns whether an interval must begin at the very time at which one that excludes it ends.
 fn touches(network: &Network, plan: &Found) -> bool {
     let arc = |label: LabelId| &network.arcs[network.labels[label.index()].arc.index()];
     plan.conflicts.iter().any(|order| {

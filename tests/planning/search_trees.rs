@@ -41,7 +41,7 @@ fn is_best_first(trace: &Trace) -> bool {
     matches!(trace.events.first().map(|it| &it.event), Some(Event::Begin(round)) if round.is_best_first)
 }
 
-/// What of the tree of a finished search is open still.
+/// Returns what of the tree of a finished search is open still.
 fn open_states(trace: &Trace) -> Vec<String> {
     let ways = ways_to_plans(trace);
     let entered: BTreeSet<TreeNodeId> = trace.events.iter().map(|entry| entry.tree_node).collect();
@@ -109,7 +109,7 @@ fn way(trace: &Trace, id: TreeNodeId) -> Vec<TreeChoice> {
     std::iter::successors(Some(id), above).filter_map(|id| trace.tree[id as usize].choice).collect()
 }
 
-/// Whether a plan makes all of these choices, which are alternatives of decisions.
+/// Returns whether a plan makes all of these choices, which are alternatives of decisions.
 fn makes(plan: &Plan, choices: &[TreeChoice]) -> bool {
     choices.iter().all(|choice| match *choice {
         TreeChoice::Decision { decision, alternative } => {
@@ -119,7 +119,7 @@ fn makes(plan: &Plan, choices: &[TreeChoice]) -> bool {
     })
 }
 
-/// What is wrong with the learned conflicts that are said to exclude states.
+/// Returns what is wrong with the learned conflicts that are said to exclude states.
 fn false_exclusions(network: &Network, trace: &Trace) -> Vec<String> {
     let excluded = exclusions(trace);
     let ways = ways_to_plans(trace);

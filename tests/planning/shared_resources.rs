@@ -131,7 +131,7 @@ impl Block {
         self.activities.iter().map(|activity| activity.duration).max().unwrap_or(0)
     }
 
-    /// What it takes some time after its start.
+    /// Returns what it takes some time after its start.
     fn takes(&self, resource: usize, time: i64) -> i64 {
         let running = self.activities.iter().filter(|activity| (0..activity.duration).contains(&time));
         running.map(|activity| activity.amounts[resource]).sum()

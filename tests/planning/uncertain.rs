@@ -97,7 +97,8 @@ pub fn compare_all(
     assert!(feasible > missions / 8 && decisive > least_decisive, "the missions are not mixed");
 }
 
-/// How many plans the mission has with nature and without, if the reference finishes and planning agrees with it.
+/// Returns how many plans the mission has with nature and without, if the reference finishes and planning agrees with
+/// it.
 fn compare(
     text: &str,
     seed: u64,
@@ -196,7 +197,7 @@ fn all_sides(network: &Network) -> Option<Vec<Key>> {
     Some(answer.plans.into_iter().map(|key| (key.choices, key.links, key.sides)).collect())
 }
 
-/// Whether the network of a plan is controllable as the mission asks for.
+/// Returns whether the network of a plan is controllable as the mission asks for.
 fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
     let choices: Vec<Choice> = choices
         .iter()
@@ -230,7 +231,7 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
     is_controllable_with(network, &choices, &before)
 }
 
-/// Whether the arcs that `choices` select, with an order of events, are controllable as the mission asks for.
+/// Returns whether the arcs that `choices` select, with an order of events, are controllable as the mission asks for.
 pub fn is_controllable_with(network: &Network, choices: &[Choice], before: &[(NodeId, NodeId)]) -> bool {
     let (_, selected_arcs) = closure(network, choices);
     let mut uncertain = stnu::Network::new(network.nodes.len());

@@ -259,7 +259,7 @@ impl Before {
         before
     }
 
-    /// Whether one event happens before another one in every schedule (SPEC 10.4).
+    /// Returns whether one event happens before another one in every schedule (SPEC 10.4).
     fn is_before(&self, earlier: NodeId, later: NodeId) -> bool {
         let (first, then) = (earlier.index(), later.index());
         let is_tied = self.at_most[first][then] <= 0 && self.at_most[then][first] <= 0;
@@ -305,7 +305,8 @@ struct Reference<'a> {
 }
 
 impl Reference<'_> {
-    /// Whether events can be put in order, or nothing if that takes too long. What is `excluded` was tried before.
+    /// Returns whether events can be put in order, or nothing if that takes too long. What is `excluded` was tried
+    /// before.
     fn search(&mut self, before: &Before, excluded: &[(NodeId, NodeId)]) -> Option<bool> {
         self.tried += 1;
         if self.tried > ORDERS {
@@ -336,7 +337,8 @@ impl Reference<'_> {
     }
 }
 
-/// How many plans the mission has, one or none, and how many without the environment, if the reference finishes.
+/// Returns how many plans the mission has, one or none, and how many without the environment, if the reference
+/// finishes.
 fn compare(seed: u64) -> Result<Option<(usize, usize)>, String> {
     let text = random_mission(seed);
     let mut network = network(&text);

@@ -23,7 +23,7 @@ pub const NOT_COPIED: [&str; 10] = [
     "n11_nested_nature",
 ];
 
-/// What is missing for a case to pass, if anything is.
+/// Returns what is missing for a case to pass, if anything is.
 pub fn not_built(case: &Value) -> Option<&'static str> {
     NOT_BUILT.iter().find(|(id, _)| case["id"] == *id).map(|&(_, missing)| missing)
 }
@@ -40,7 +40,7 @@ pub fn expect_as_listed(case: &Value, outcome: Result<(), String>) {
     }
 }
 
-/// Where the cases lie.
+/// Returns where the cases lie.
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance")
 }

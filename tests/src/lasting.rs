@@ -140,7 +140,7 @@ impl Exhaustive<'_> {
         self.schedules(&leaf, &mut times, &mut Seen::default())
     }
 
-    /// What the choices select, as far as they go.
+    /// Returns what the choices select, as far as they go.
     fn reach(&self, taken: &[Option<u32>]) -> (Vec<bool>, Vec<bool>) {
         let mut nodes = vec![false; self.network.nodes.len()];
         let mut arcs = vec![false; self.network.arcs.len()];
@@ -401,7 +401,7 @@ impl Leaf {
     }
 }
 
-/// What arcs whose lower bound is not negative put before what, one after the other.
+/// Returns what arcs whose lower bound is not negative put before what, one after the other.
 fn text_order(network: &Network, arcs: &[bool]) -> Vec<Vec<bool>> {
     let count = network.nodes.len();
     let mut before = vec![vec![false; count]; count];
@@ -428,7 +428,7 @@ fn is_without_circles(sides: &[(usize, usize)], count: usize) -> bool {
     }
 }
 
-/// Whether a resource is enough for its uses in this order (SPEC 11).
+/// Returns whether a resource is enough for its uses in this order (SPEC 11).
 fn is_enough(pool: &Pool, times: &[usize]) -> bool {
     let sum = |amounts: &mut dyn Iterator<Item = Rational>| {
         amounts.fold(Rational::ZERO, |sum, it| sum.checked_add(it).expect("small amounts"))

@@ -80,8 +80,8 @@ fn timed_block(rng: &mut Rng, depth: u32) -> String {
     format!("{open} {} }}{bounds}", items.join(separator))
 }
 
-/// What comes before an interval that begins at `time` in the schedule that a mission is built around: that time, any
-/// time, or a choice.
+/// Returns what comes before an interval that begins at `time` in the schedule that a mission is built around: that
+/// time, any time, or a choice.
 fn lead(rng: &mut Rng, time: i64) -> String {
     let (exact, other) = (format!("[{time},{time}]"), exactly(rng));
     match rng.below(7) {

@@ -64,7 +64,7 @@ fn timed(mut work: impl FnMut()) -> f64 {
     millis(start.elapsed())
 }
 
-/// Where the keystroke goes: before the first digit after the middle that follows `mark`.
+/// Returns where the keystroke goes: before the first digit after the middle that follows `mark`.
 fn place(text: &str, mark: &str) -> usize {
     let middle = text.len() / 2;
     text[middle..].find(mark).map_or(middle, |at| middle + at + mark.len())

@@ -73,7 +73,7 @@ pub(crate) fn figure(value: f64) -> String {
     format!("{value:.*}", (2 - digits).clamp(0, 5) as usize)
 }
 
-/// How many times `value` is of `base`, as `12 ×`.
+/// Returns how many times `value` is of `base`, as `12 ×`.
 pub(crate) fn ratio(value: f64, base: f64) -> String {
     if value.is_finite() && base > 0.0 { format!("{} ×", figure(value / base)) } else { "–".to_owned() }
 }

@@ -74,7 +74,7 @@ impl Tools {
     }
 }
 
-/// Where a file of this folder lies.
+/// Returns where a file of this folder lies.
 pub(crate) fn source_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
@@ -135,7 +135,7 @@ fn last_line(bytes: &[u8]) -> String {
     text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message").trim().to_owned()
 }
 
-/// What a program wrote to standard output, unless it failed or took too long.
+/// Returns what a program wrote to standard output, unless it failed or took too long.
 pub(crate) fn answer(command: &mut Command, limit: Duration) -> Result<String, Absent> {
     let mut child = command
         .stdin(Stdio::null())

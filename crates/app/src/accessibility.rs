@@ -46,7 +46,7 @@ struct Request {
 }
 
 impl AccessibilityMirror {
-    /// What changed since the last call; `None` if nothing did.
+    /// Returns what changed since the last call; `None` if nothing did.
     pub fn take_change(&mut self) -> Option<Change> {
         let change = self.latest.change_since(&self.handed_out)?;
         self.handed_out = self.latest.clone();

@@ -44,7 +44,7 @@ pub(crate) enum Press {
     Named,
 }
 
-/// Whether a key press may be one of a command's.
+/// Returns whether a key press may be one of a command's.
 pub fn is_of_command(key: Option<Key>, place: Option<Key>, pressed: Modifiers) -> bool {
     all_commands().flat_map(|command| command.keys).any(|&keys| {
         is_pressed(keys, key, place) != Press::Other && pressed.matches_logically(shortcut(keys).modifiers)
@@ -74,7 +74,7 @@ fn text(egui: &egui::Context, chord: Chord) -> String {
     held + &name
 }
 
-/// What is printed on a key, where that is not its name.
+/// Returns what is printed on a key, where that is not its name.
 const fn printed(key: chord::Key) -> Option<&'static str> {
     Some(match key {
         chord::Key::ArrowDown => "Down",

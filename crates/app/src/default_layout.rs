@@ -51,7 +51,7 @@ fn lesson_tiles(tiles: &mut Tiles<PanelKind>, rows: &[Vec<Vec<PanelKind>>], size
     split(tiles, LinearDir::Horizontal, &[(lesson, share), (figures, 1.0 - share)])
 }
 
-/// Where its panels stand before the user moves them.
+/// Returns where its panels stand before the user moves them.
 pub fn default_layout(arrangement: Arrangement, size: SizeClass) -> Tree<PanelKind> {
     let mut tiles = Tiles::default();
     let root = match (arrangement, size) {
@@ -231,7 +231,7 @@ pub fn from_text(text: &str) -> Option<Tree<PanelKind>> {
 /// The shares of the room that tiles may have.
 const SHARES: std::ops::RangeInclusive<f32> = 1e-6..=1e6;
 
-/// Whether a layout that was kept is a tree whose tiles have room: it may have been damaged.
+/// Returns whether a layout that was kept is a tree whose tiles have room: it may have been damaged.
 fn is_sound(tree: &Tree<PanelKind>) -> bool {
     let Some(root) = tree.root() else { return false };
     let mut waiting = vec![root];

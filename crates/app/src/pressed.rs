@@ -158,8 +158,8 @@ fn works(scope: Scope, focus: Focus, keys: KeyboardShortcut) -> bool {
     }
 }
 
-/// Whether it is a letter alone. Letters act only where a panel was turned to that is not the text: what is typed while
-/// the text happens not to have the keyboard is meant for the text.
+/// Returns whether it is a letter alone. Letters act only where a panel was turned to that is not the text: what is
+/// typed while the text happens not to have the keyboard is meant for the text.
 fn is_letter(keys: KeyboardShortcut) -> bool {
     let name = keys.logical_key.name();
     let is_held = keys.modifiers.command || keys.modifiers.alt || keys.modifiers.ctrl;
@@ -209,7 +209,7 @@ mod tests {
     /// As Windows tells it; Linux tells nothing of it.
     const ALT_GR: Modifiers = Modifiers { alt: true, ctrl: true, command: true, ..Modifiers::NONE };
 
-    /// How a chord's sign is typed on an American, a German and a French keyboard, where they differ.
+    /// Returns how a chord's sign is typed on an American, a German and a French keyboard, where they differ.
     fn typed_on_three(chord: chord::Chord) -> Option<[Typed; 3]> {
         let is_held = chord.modifiers.command && chord.modifiers.shift;
         Some(match chord.key {

@@ -81,7 +81,7 @@ impl Enroute {
         self.session.state()
     }
 
-    /// What runs around the app: clock, files, storage and the planning core.
+    /// Returns what runs around the app: clock, files, storage and the planning core.
     pub fn host_mut(&mut self) -> &mut dyn Host {
         self.session.host_mut()
     }
@@ -508,7 +508,7 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
     }
 }
 
-/// Whether a file is of a kind that describes an image in a file of its own.
+/// Returns whether a file is of a kind that describes an image in a file of its own.
 fn is_description(path: &std::path::Path) -> bool {
     path.extension()
         .is_some_and(|it| ["lbl", "yaml", "yml"].iter().any(|known| it.eq_ignore_ascii_case(known)))

@@ -57,7 +57,7 @@ pub enum Undecided {
 }
 
 impl Undecided {
-    /// What it means, as the end of a sentence.
+    /// Returns what it means, as the end of a sentence.
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Plan => "undecided whether there is a plan",
@@ -70,7 +70,7 @@ impl Undecided {
 }
 
 impl TimeLimit {
-    /// How long it is; `None` without a limit, or if the limit is longer than a duration can be.
+    /// Returns how long it is; `None` without a limit, or if the limit is longer than a duration can be.
     pub fn duration(self) -> Option<Duration> {
         self.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
     }
@@ -83,7 +83,7 @@ impl TimeLimit {
 }
 
 impl Deadline {
-    /// Whether the time is up.
+    /// Returns whether the time is up.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|deadline| Instant::now() >= deadline)
     }
@@ -93,7 +93,7 @@ impl Deadline {
         Some(self.0?.saturating_duration_since(Instant::now()).as_secs_f64() * 1000.0)
     }
 
-    /// Whether there was also some time for what the time was up in the middle of.
+    /// Returns whether there was also some time for what the time was up in the middle of.
     pub fn is_long_over(self) -> bool {
         self.0.is_some_and(|deadline| Instant::now() >= deadline + GRACE)
     }

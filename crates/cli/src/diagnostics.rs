@@ -124,7 +124,7 @@ fn harmless(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// What is printed about `marked`, the first such piece of `source`.
+    /// Returns what is printed about `marked`, the first such piece of `source`.
     fn printed(source: &str, marked: &str) -> String {
         let start = source.find(marked).expect("a piece of the source") as u32;
         let lines = LineIndex::new(source);

@@ -11,7 +11,7 @@ use same_file::Handle;
 /// The files that were read, so that none of them is written over.
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Whether a file was read, by this name or another one: links lead to the same file.
+/// Returns whether a file was read, by this name or another one: links lead to the same file.
 pub fn was_read(path: &Path) -> bool {
     // Opening a pipe waits for its other end, so only plain files are opened.
     let handle = |path: &Path| if path.is_file() { Handle::from_path(path).ok() } else { None };

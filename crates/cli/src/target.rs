@@ -41,7 +41,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// What the call asks to be planned.
+    /// Returns what the call asks to be planned.
     pub fn goal(&self) -> anyhow::Result<Goal> {
         if let Some(name) = &self.activity {
             let (lower, upper) = match &self.bounds {
@@ -55,7 +55,7 @@ impl Target {
     }
 }
 
-/// Whether a file holds a network rather than a mission text.
+/// Returns whether a file holds a network rather than a mission text.
 pub fn is_network(name: &str, source: &str) -> bool {
     let is_named_so = [".json", ".edn", ".tpn", ".ptpn", ".xml"].iter().any(|ending| name.ends_with(ending));
     is_named_so || (name == "-" && interchange::is_network_text(source))

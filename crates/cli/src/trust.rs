@@ -18,7 +18,7 @@ pub struct Trusted {
 }
 
 impl Trusted {
-    /// Whether no keys were named.
+    /// Returns whether no keys were named.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }

@@ -216,12 +216,12 @@ impl PlanNetwork {
         self.links.iter().position(|&of| of == arc).map(|index| LinkId(index as u32))
     }
 
-    /// Whether the environment chooses nothing.
+    /// Returns whether the environment chooses nothing.
     pub const fn is_certain(&self) -> bool {
         self.links.is_empty()
     }
 
-    /// What a part of a conflict represents.
+    /// Returns what a part of a conflict represents.
     pub fn source(&self, part: Part) -> Source {
         match part {
             Part::Edge(id) => self.edges[id.index()],
@@ -230,7 +230,7 @@ impl PlanNetwork {
         }
     }
 
-    /// What a cycle of constraints represents, in order and without repeats.
+    /// Returns what a cycle of constraints represents, in order and without repeats.
     pub fn sources(&self, parts: impl IntoIterator<Item = Part>) -> Vec<Source> {
         let mut sources: Vec<Source> = parts.into_iter().map(|part| self.source(part)).collect();
         sources.sort_unstable();
@@ -238,7 +238,8 @@ impl PlanNetwork {
         sources
     }
 
-    /// Why the plan does not withstand the environment as far as the mission asks, if it does not; time as `stnu` takes it.
+    /// Returns why the plan does not withstand the environment as far as the mission asks, if it does not; time as
+    /// `stnu` takes it.
     pub fn refute(
         &self,
         asked: Controllability,

@@ -106,7 +106,7 @@ impl Rect {
         Self { min: self.min.shifted(-margin, -margin), max: self.max.shifted(margin, margin) }
     }
 
-    /// Whether the two share a point.
+    /// Returns whether the two share a point.
     pub fn touches(self, other: Self) -> bool {
         self.min.x <= other.max.x
             && other.min.x <= self.max.x
@@ -114,7 +114,7 @@ impl Rect {
             && other.min.y <= self.max.y
     }
 
-    /// Whether the two share more than their edges.
+    /// Returns whether the two share more than their edges.
     pub fn overlaps(self, other: Self) -> bool {
         self.min.x < other.max.x
             && other.min.x < self.max.x
@@ -122,14 +122,14 @@ impl Rect {
             && other.min.y < self.max.y
     }
 
-    /// Whether `point` lies inside or on the edge.
+    /// Returns whether `point` lies inside or on the edge.
     pub fn contains(self, point: Point) -> bool {
         self.min.x <= point.x && point.x <= self.max.x && self.min.y <= point.y && point.y <= self.max.y
     }
 }
 
 impl Piece {
-    /// Where the piece ends.
+    /// Returns where the piece ends.
     pub fn end(self) -> Point {
         match self {
             Self::Line(end) | Self::Cubic(_, _, end) => end,
@@ -244,7 +244,7 @@ pub fn distance_point_segment(point: Point, from: Point, to: Point) -> f64 {
     point.distance(from.lerp(to, along.clamp(0.0, 1.0)))
 }
 
-/// Whether the segment between `from` and `to` passes through the inside of `rect` (clipped slab by slab).
+/// Returns whether the segment between `from` and `to` passes through the inside of `rect` (clipped slab by slab).
 pub fn segment_meets_rect(from: Point, to: Point, rect: Rect) -> bool {
     let sides = [(from.x, to.x, rect.min.x, rect.max.x), (from.y, to.y, rect.min.y, rect.max.y)];
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);

@@ -284,7 +284,7 @@ impl DisplayList {
         &self.texts
     }
 
-    /// What the item at `place` represents, in words.
+    /// Returns what the item at `place` represents, in words.
     pub fn title(&self, place: usize) -> Option<&str> {
         let found = self.titles.binary_search_by_key(&(place as u32), |(place, _)| *place).ok()?;
         self.titles.get(found).map(|(_, title)| title.as_str())
@@ -355,7 +355,7 @@ impl Detail {
         Self { from: 0.0, to: zoom as f32 }
     }
 
-    /// Whether something is drawn at this zoom.
+    /// Returns whether something is drawn at this zoom.
     pub fn holds(self, zoom: f64) -> bool {
         let zoom = zoom as f32;
         self.from <= zoom && zoom < self.to

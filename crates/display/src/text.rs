@@ -66,7 +66,7 @@ pub enum Fit {
 }
 
 impl Fit {
-    /// Whether a text fills the place that was measured for it.
+    /// Returns whether a text fills the place that was measured for it.
     pub const fn fills_its_place(self) -> bool {
         matches!(self, Self::Shrink | Self::Unabridged)
     }
@@ -110,7 +110,7 @@ impl Text {
         Self { anchor, fit, ..self }
     }
 
-    /// Where the text is when its row is moved, as far as it may be, between `left` and `right`.
+    /// Returns where the text is when its row is moved, as far as it may be, between `left` and `right`.
     pub fn rect_in_view(&self, left: f64, right: f64) -> Rect {
         self.slide.map_or(self.rect, |slide| slide.moved(self.rect, left, right))
     }

@@ -40,7 +40,7 @@ pub(crate) fn matching(text: &str, offset: usize) -> Option<(usize, usize)> {
     found.map(|found| (at, found))
 }
 
-/// Whether `offset` is behind a line comment's start in its line.
+/// Returns whether `offset` is behind a line comment's start in its line.
 fn is_comment(text: &str, offset: usize) -> bool {
     let line_start = text[..offset].rfind('\n').map_or(0, |at| at + 1);
     text[line_start..offset].contains("//")

@@ -12,7 +12,7 @@ const PERIOD_SECS: f64 = 1.1;
 /// A caret that has not moved for so long stops blinking, and the app can rest.
 const BLINKING_SECS: f64 = 30.0;
 
-/// Where the caret is on screen, if its row is visible.
+/// Returns where the caret is on screen, if its row is visible.
 pub(crate) fn rect(view: &EditorView<'_>, geometry: &Geometry<'_>, shown: &ShownRows) -> Option<Rect> {
     rect_at(view, geometry, shown, view.document.caret().head)
 }

@@ -33,7 +33,7 @@ impl Geometry<'_> {
         self.wrapped.map_or_else(|| (self.folded.line_of(row), 0), |wrapped| wrapped.place_of(row))
     }
 
-    /// How many rows there are.
+    /// Returns how many rows there are.
     pub(crate) fn num_rows(&self, document: &Document) -> usize {
         self.wrapped.map_or_else(|| self.folded.count(document.line_count()), WrappedRows::count)
     }

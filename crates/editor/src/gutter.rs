@@ -52,7 +52,7 @@ pub(crate) fn paint(
     }
 }
 
-/// How bad the worst thing is that begins in a line.
+/// Returns how bad the worst thing is that begins in a line.
 fn worst_by_line(view: &EditorView<'_>) -> BTreeMap<usize, Severity> {
     let mut worst = BTreeMap::new();
     for diagnostic in view.diagnostics {

@@ -67,7 +67,7 @@ fn assistive(request: &egui::accesskit::ActionRequest, keyboard: &Keyboard) -> O
     }
 }
 
-/// What these events do to the text of an editor without a list, whatever else they may do.
+/// Returns what these events do to the text of an editor without a list, whatever else they may do.
 pub fn typed_ahead(events: &[Event]) -> Vec<TextCommand> {
     let of_text = |event: &Event| match action_of(event, false)? {
         EditorAction::Text(command) => Some(command),
@@ -76,7 +76,7 @@ pub fn typed_ahead(events: &[Event]) -> Vec<TextCommand> {
     events.iter().filter_map(of_text).collect()
 }
 
-/// What a key does to the list at the caret.
+/// Returns what a key does to the list at the caret.
 fn popup_action(event: &Event) -> Option<EditorAction> {
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return None };
     if !modifiers.is_none() {
@@ -114,7 +114,7 @@ fn action_of(event: &Event, is_composing: bool) -> Option<EditorAction> {
     }
 }
 
-/// What a key does to the text.
+/// Returns what a key does to the text.
 fn text_command(key: Key, modifiers: Modifiers) -> Option<TextCommand> {
     let select = modifiers.shift;
     let by_word = modifiers.ctrl || modifiers.alt || (modifiers.command && !modifiers.mac_cmd);

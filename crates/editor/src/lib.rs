@@ -52,7 +52,7 @@ impl Editor {
     }
 }
 
-/// Whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
+/// Returns whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
 fn is_pressed(response: &egui::Response) -> bool {
     response.is_pointer_button_down_on() || response.clicked()
 }

@@ -111,27 +111,27 @@ impl LineLayout {
         self.bytes.clone()
     }
 
-    /// Whether the line ends in this row.
+    /// Returns whether the line ends in this row.
     pub(crate) fn is_last(&self) -> bool {
         self.is_last
     }
 
-    /// How far right of the line's start the row begins.
+    /// Returns how far right of the line's start the row begins.
     pub(crate) fn left(&self) -> f32 {
         self.left
     }
 
-    /// How far right of the line's start the row ends.
+    /// Returns how far right of the line's start the row ends.
     pub(crate) fn right(&self) -> f32 {
         self.left + self.galley.size().x
     }
 
-    /// Whether a caret at this place is in this row.
+    /// Returns whether a caret at this place is in this row.
     pub(crate) fn holds(&self, offset: usize) -> bool {
         holds(&self.bytes, self.is_last, offset)
     }
 
-    /// How far right of the line's start a byte of the document stands; behind composed text at its place.
+    /// Returns how far right of the line's start a byte of the document stands; behind composed text at its place.
     pub(crate) fn x_of(&self, view: &EditorView<'_>, offset: usize) -> f32 {
         let offset = offset.clamp(self.bytes.start, self.bytes.end);
         let text = view.document.text();

@@ -145,7 +145,7 @@ impl TextArea {
     }
 }
 
-/// How far the view is scrolled when a place is to be seen, once, and it was scrolled by `offset` before.
+/// Returns how far the view is scrolled when a place is to be seen, once, and it was scrolled by `offset` before.
 fn scrolled_to(
     view: &EditorView<'_>,
     offset: egui::Vec2,

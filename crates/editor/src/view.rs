@@ -158,7 +158,7 @@ pub trait LanguageService {
     /// The colored pieces in a part of the text, in textual order; what is between them is plain.
     fn highlights(&mut self, bytes: Range<usize>) -> Vec<Highlight>;
 
-    /// What is known about the text at a place, in Markdown.
+    /// Returns what is known about the text at a place, in Markdown.
     fn hover(&mut self, offset: usize) -> Option<String>;
 
     /// The signature of the call around a place.

@@ -55,7 +55,7 @@ impl Bound {
         }
     }
 
-    /// What is left of the bound after `time`: ∞ − x = ∞. `None` when the exact result does not fit.
+    /// Returns what is left of the bound after `time`: ∞ − x = ∞. `None` when the exact result does not fit.
     pub fn checked_sub(self, time: Time) -> Option<Self> {
         match self {
             Self::Finite(bound) => bound.checked_sub(time).map(Self::Finite),

@@ -62,22 +62,22 @@ impl Rational {
         (i128::from(self.numerator), i128::from(self.denominator))
     }
 
-    /// Whether it is nought.
+    /// Returns whether it is nought.
     pub const fn is_zero(self) -> bool {
         self.numerator == 0
     }
 
-    /// Whether it is below nought.
+    /// Returns whether it is below nought.
     pub const fn is_negative(self) -> bool {
         self.numerator < 0
     }
 
-    /// Whether it is above nought.
+    /// Returns whether it is above nought.
     pub const fn is_positive(self) -> bool {
         self.numerator > 0
     }
 
-    /// Whether it is a whole number.
+    /// Returns whether it is a whole number.
     pub const fn is_integer(self) -> bool {
         self.denominator == 1
     }
@@ -87,7 +87,7 @@ impl Rational {
         self.numerator.div_euclid(self.denominator)
     }
 
-    /// How many `1 / parts` it has, rounded down; `None` if that many do not fit.
+    /// Returns how many `1 / parts` it has, rounded down; `None` if that many do not fit.
     pub fn integer_parts(self, parts: u32) -> Option<i64> {
         let (numerator, denominator) = self.wide();
         i64::try_from((numerator * i128::from(parts)).div_euclid(denominator)).ok()

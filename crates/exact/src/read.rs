@@ -42,7 +42,7 @@ impl FromStr for Rational {
     }
 }
 
-/// Whether a text is one of the spellings of infinity that this program and other tools use.
+/// Returns whether a text is one of the spellings of infinity that this program and other tools use.
 pub(crate) fn is_infinity(text: &str) -> bool {
     let text = text.trim();
     let name = text.strip_prefix('+').unwrap_or(text);

@@ -25,7 +25,7 @@ impl Scale {
         Self { ticks_per_unit: if ticks_per_unit == 0 { 1 } else { ticks_per_unit as i64 } }
     }
 
-    /// How many ticks are one unit.
+    /// Returns how many ticks are one unit.
     pub const fn ticks_per_unit(self) -> i64 {
         self.ticks_per_unit
     }

@@ -84,7 +84,7 @@ impl Visitor<'_> for Exact {
         }
     }
 
-    /// What was written in the document is the shortest decimal that gives this float.
+    /// Returns what was written in the document is the shortest decimal that gives this float.
     fn visit_f64<E: Error>(self, value: f64) -> Result<Bound, E> {
         self.visit_str(&value.to_string())
     }

@@ -23,7 +23,7 @@ impl Time {
         Self(units)
     }
 
-    /// How many units it is.
+    /// Returns how many units it is.
     pub const fn units(self) -> Rational {
         self.0
     }
@@ -48,22 +48,22 @@ impl Time {
         self.0.denominator()
     }
 
-    /// Whether it is zero.
+    /// Returns whether it is zero.
     pub const fn is_zero(self) -> bool {
         self.0.is_zero()
     }
 
-    /// Whether it lies before nought.
+    /// Returns whether it lies before nought.
     pub const fn is_negative(self) -> bool {
         self.0.is_negative()
     }
 
-    /// Whether it lies after nought.
+    /// Returns whether it lies after nought.
     pub const fn is_positive(self) -> bool {
         self.0.is_positive()
     }
 
-    /// Whether it is a whole number of units.
+    /// Returns whether it is a whole number of units.
     pub const fn is_integer(self) -> bool {
         self.0.is_integer()
     }
@@ -93,12 +93,12 @@ impl Time {
         self.0.checked_div(divisor.into()).map(Self)
     }
 
-    /// How many times `other` fits into it; `None` also if `other` is zero.
+    /// Returns how many times `other` fits into it; `None` also if `other` is zero.
     pub fn checked_ratio(self, other: Self) -> Option<Rational> {
         self.0.checked_div(other.0)
     }
 
-    /// How many `1 / parts` of a unit it has, rounded down; `None` if that many do not fit.
+    /// Returns how many `1 / parts` of a unit it has, rounded down; `None` if that many do not fit.
     pub fn integer_parts(self, parts: u32) -> Option<i64> {
         self.0.integer_parts(parts)
     }

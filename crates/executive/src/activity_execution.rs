@@ -37,7 +37,7 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// How long it takes at least; `None` if it never ends.
+    /// Returns how long it takes at least; `None` if it never ends.
     pub(crate) const fn least(&self) -> Option<Time> {
         match self {
             Self::AsPlanned => Some(Time::ZERO),
@@ -89,7 +89,7 @@ pub trait ActivityExecutor {
         start: Time,
     ) -> Result<ActivityExecution, Overflow>;
 
-    /// Where the vehicles of activities that were started are at `now`, or where they stand, in meters.
+    /// Returns where the vehicles of activities that were started are at `now`, or where they stand, in meters.
     fn whereabouts(&self, _: &Network, _: &[OccurrenceId], _: Time) -> Vec<(u32, [f64; 2])> {
         Vec::new()
     }
@@ -102,7 +102,7 @@ pub trait ActivityExecutor {
     /// Activities that were started are given up at `now`: what of them is not over is ended early.
     fn abandon(&mut self, _: &Network, _: &[OccurrenceId], _: Time) {}
 
-    /// What the last start or giving up has changed for others; said once.
+    /// Returns what the last start or giving up has changed for others; said once.
     fn revise(&mut self) -> Option<Revision> {
         None
     }

@@ -31,8 +31,8 @@ impl Adversary {
         Ok((verdict != stnu::Verdict::Controllable).then_some(Self { read }))
     }
 
-    /// Which duration the environment ends next, and when; `None` if it lets the executive do what that would do next,
-    /// at an event and a time.
+    /// Returns which duration the environment ends next, and when; `None` if it lets the executive do what that would
+    /// do next, at an event and a time.
     pub(crate) fn answer(
         &self,
         stage: &Stage,

@@ -83,7 +83,7 @@ impl Dispatch {
         Ok(Self { now: 0, propagation })
     }
 
-    /// Whether the environment chooses durations, and the plan withstands that.
+    /// Returns whether the environment chooses durations, and the plan withstands that.
     pub(crate) const fn withstands_nature(&self) -> bool {
         matches!(self.propagation, Propagation::Waits(_))
     }
@@ -109,7 +109,7 @@ impl Dispatch {
         }
     }
 
-    /// What a point happens together with, by number.
+    /// Returns what a point happens together with, by number.
     pub(crate) fn component(&self, point: PointId) -> usize {
         match &self.propagation {
             Propagation::Tree(_) => point.index(),
@@ -117,7 +117,7 @@ impl Dispatch {
         }
     }
 
-    /// Whether the time of a point is settled.
+    /// Returns whether the time of a point is settled.
     pub(crate) fn is_settled(&self, point: PointId) -> bool {
         match &self.propagation {
             Propagation::Tree(tree) => tree.unfolding.has_happened(point),
@@ -125,7 +125,8 @@ impl Dispatch {
         }
     }
 
-    /// Whether each point that must come before this one, because of one constraint between the two, has its time.
+    /// Returns whether each point that must come before this one, because of one constraint between the two, has its
+    /// time.
     pub(crate) fn is_enabled(&self, point: PointId) -> bool {
         match &self.propagation {
             Propagation::Tree(tree) => tree.earlier[point.index()] == 0,

@@ -129,7 +129,7 @@ impl Facts {
         changed
     }
 
-    /// How many events of the world's own a network with these facts ends with.
+    /// Returns how many events of the world's own a network with these facts ends with.
     pub fn num_world_events(&self) -> usize {
         self.states.len() + self.levels.len()
     }
@@ -343,7 +343,8 @@ fn free_start(network: &mut Network, occurrence: OccurrenceId, times: &[Option<T
     }
 }
 
-/// Whether another alternative of a decision has started: only what begins with its decision is still excluded then.
+/// Returns whether another alternative of a decision has started: only what begins with its decision is still excluded
+/// then.
 fn is_decided_otherwise(
     network: &Network,
     (decision, alternative): (DecisionId, u32),

@@ -170,7 +170,7 @@ impl PinnedPlan {
         }
     }
 
-    /// Whether nothing was pinned, and no time let pass.
+    /// Returns whether nothing was pinned, and no time let pass.
     pub fn is_untouched(&self) -> bool {
         let has_begun = matches!(&self.effect, Effect::Run(run) if run.has_begun());
         self.pins.is_empty() && !has_begun

@@ -122,7 +122,7 @@ impl PlanNetwork {
         (0..self.nodes.len() as u32).map(PointId)
     }
 
-    /// What all times are relative to.
+    /// Returns what all times are relative to.
     pub const fn origin(&self) -> PointId {
         self.origin
     }

@@ -116,7 +116,7 @@ fn arcs(network: &Network, tags: &[u32]) -> impl Iterator<Item = (ArcId, &'stati
     tags.iter().map(|&tag| ArcId(tag)).filter(|arc| arc.index() < network.arcs.len()).map(|arc| (arc, ""))
 }
 
-/// What happened, and the bounds of arcs that contradict it, each with what is added to it.
+/// Returns what happened, and the bounds of arcs that contradict it, each with what is added to it.
 fn explain<'a>(
     network: &Network,
     observed: &Observations,

@@ -130,7 +130,7 @@ impl Strategy {
         self.made.scale()
     }
 
-    /// Whether the plan selects an event.
+    /// Returns whether the plan selects an event.
     pub(crate) fn is_selected(&self, node: NodeId) -> bool {
         self.made.point(node).is_some()
     }
@@ -163,7 +163,7 @@ impl Strategy {
         Ok(())
     }
 
-    /// What happens next, the environment first.
+    /// Returns what happens next, the environment first.
     fn next(&self, play: &Play, chosen: &BTreeMap<usize, i64>) -> Option<RawAct> {
         let act = |instant: usize| {
             let point = self.instants[instant][0];
@@ -191,7 +191,7 @@ impl Strategy {
         play.acts.iter().find(|act| act.instant == instant).map(|act| (act.time, act.window))
     }
 
-    /// How a run stands.
+    /// Returns how a run stands.
     pub(crate) fn course(&self, play: &Play, num_nodes: usize) -> Result<Course, PlanError> {
         let scale = self.scale();
         let time = |ticks: i64| scale.time(ticks);

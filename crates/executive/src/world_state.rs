@@ -100,7 +100,7 @@ impl Effects {
         effects
     }
 
-    /// What gives variables their values at an event.
+    /// Returns what gives variables their values at an event.
     pub(crate) fn given_at(&self, node: NodeId) -> Vec<LabelId> {
         let given = |effect: &Effect| match effect {
             Effect::Gives(label) => Some(*label),
@@ -230,7 +230,7 @@ impl WorldState {
         held.value.filter(|_| held.changing.is_empty())
     }
 
-    /// Whether something is changing a variable.
+    /// Returns whether something is changing a variable.
     pub(crate) fn is_changing(&self, variable: VariableId) -> bool {
         self.held.get(variable.index()).is_some_and(|held| !held.changing.is_empty())
     }
@@ -317,7 +317,7 @@ impl WorldState {
         self.unmet.extend(unmet);
     }
 
-    /// Whether a condition on a level does not hold now.
+    /// Returns whether a condition on a level does not hold now.
     fn is_unmet(&self, network: &Network, condition: UseId) -> bool {
         let of = &network.uses[condition.index()];
         of.level.is_some_and(|level| !level.order.holds(self.level(of.resource), level.bound))
@@ -416,7 +416,8 @@ impl WorldState {
         self.momentary.push(requirement);
     }
 
-    /// What is not as it must be when the present instant is over: only what has changed in it can have become so.
+    /// Returns what is not as it must be when the present instant is over: only what has changed in it can have become
+    /// so.
     pub(crate) fn lack(&self, network: &Network) -> Option<Lack> {
         let holds = |label: &LabelId| {
             let literal = &network.labels[label.index()].literal;
@@ -447,7 +448,7 @@ impl WorldState {
         self.moved.iter().find(|resource| !is_kept(resource)).map(|&resource| Lack::Level(resource))
     }
 
-    /// What a variable is, for people: `IN`, `changing`.
+    /// Returns what a variable is, for people: `IN`, `changing`.
     pub(crate) fn words(&self, network: &Network, variable: VariableId) -> SmolStr {
         let named = |value: ValueId| network.variables[variable.index()].values.get(value.index()).cloned();
         match self.value(variable) {
@@ -458,7 +459,8 @@ impl WorldState {
     }
 }
 
-/// Whether a resource represents an order, such as that of the parts of an `unordered` block, and is not one of the mission.
+/// Returns whether a resource represents an order, such as that of the parts of an `unordered` block, and is not one of
+/// the mission.
 fn is_unnamed(resource: &Resource) -> bool {
     resource.name.contains('#')
 }

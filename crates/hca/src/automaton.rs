@@ -218,7 +218,7 @@ impl Choice {
         }
     }
 
-    /// What counts when a child completes, if that decides the choice.
+    /// Returns what counts when a child completes, if that decides the choice.
     pub fn rewards(&self) -> Option<&[Rational]> {
         match &self.by {
             ChosenBy::Chance(_) => None,
@@ -248,7 +248,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// Whether it does more than marking locations.
+    /// Returns whether it does more than marking locations.
     pub(crate) const fn is_timed(&self) -> bool {
         !(self.clocks.is_empty() && self.timed.is_empty() && self.locks.is_empty() && self.choices.is_empty())
     }
@@ -286,7 +286,7 @@ impl Automaton {
         self.choices.iter().find(|choice| choice.composite == composite)
     }
 
-    /// What the marked locations count in one step.
+    /// Returns what the marked locations count in one step.
     pub fn reward(&self, marking: &Marking) -> Rational {
         let rewards = marking.iter().filter_map(|location| self.location(location)?.reward);
         rewards.fold(Rational::ZERO, |sum, reward| sum.checked_add(reward).unwrap_or(sum))
@@ -307,7 +307,7 @@ impl Automaton {
         }
     }
 
-    /// What a transition waits for, in drawings: its guard, or that the time of its location is up.
+    /// Returns what a transition waits for, in drawings: its guard, or that the time of its location is up.
     pub fn condition_text(&self, transition: &Transition) -> String {
         if let Some(guard) = transition.guard.and_then(|guard| self.guard(guard)) {
             return guard.to_string();
@@ -317,7 +317,7 @@ impl Automaton {
         if is_timed && leaves { "time is up".to_owned() } else { "true".to_owned() }
     }
 
-    /// What drawings call a composite with a clock, a lock or a choice.
+    /// Returns what drawings call a composite with a clock, a lock or a choice.
     pub fn title(&self, id: CompositeId) -> Option<SmolStr> {
         let composite = self.composite(id)?;
         match composite.kind {
@@ -361,7 +361,7 @@ impl Automaton {
         marking
     }
 
-    /// Whether any location below a composite is marked.
+    /// Returns whether any location below a composite is marked.
     pub fn is_active(&self, composite: CompositeId, marking: &Marking) -> bool {
         self.composite(composite).is_some_and(|composite| marking.intersects(&composite.locations))
     }

@@ -183,7 +183,7 @@ impl Times {
         self.ends.get_mut(clock.0 as usize)
     }
 
-    /// Whether a clock is up at the end of this step.
+    /// Returns whether a clock is up at the end of this step.
     pub(crate) fn is_up(&self, clock: ClockId) -> bool {
         self.ends.get(clock.0 as usize).and_then(Ends::first) == Some(self.step)
     }

@@ -238,7 +238,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         id
     }
 
-    /// What has to have lasted for a guard with HELD, whose duration is that of its place.
+    /// Returns what has to have lasted for a guard with HELD, whose duration is that of its place.
     fn held(&mut self, guard: &Guard, held: &Held) -> u32 {
         let test = self.test(&Guard { non_entailed: false, held: None, ..guard.clone() });
         let steps = Duration::read(&held.duration.text).ok();
@@ -272,7 +272,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         counted
     }
 
-    /// How a duration is called where WARP has shortened it, with its steps.
+    /// Returns how a duration is called where WARP has shortened it, with its steps.
     fn duration(&mut self, written: &Name) -> (SmolStr, u64) {
         match self.counted(written) {
             Some((duration, steps)) => (format_smolstr!("{duration}"), steps),

@@ -159,7 +159,7 @@ impl Condition {
         self.nodes.len() as u32 - 1
     }
 
-    /// Whether the constraint is true in every completion of `values`.
+    /// Returns whether the constraint is true in every completion of `values`.
     ///
     /// Linear in the size of the constraint when no variable occurs twice; otherwise exponential in the number of
     /// unknown variables at worst.

@@ -92,7 +92,7 @@ impl Table<'_, '_> {
         can_hold_together(&locks.chain([with]).collect::<Vec<_>>())
     }
 
-    /// Whether a location of a program is part of what is done under a lock.
+    /// Returns whether a location of a program is part of what is done under a lock.
     fn is_under(&self, (program, location): (usize, LocationId), which: Which) -> bool {
         program == which.0
             && self
@@ -211,7 +211,7 @@ fn ring_from(first: Which, next: &BTreeMap<Which, Vec<Which>>) -> Option<Vec<Whi
     None
 }
 
-/// Whether some values of their variables satisfy several constraints; variables of one name are one.
+/// Returns whether some values of their variables satisfy several constraints; variables of one name are one.
 pub(crate) fn can_hold_together(constraints: &[(&Automaton, &Constraint)]) -> bool {
     let mut counts: BTreeMap<&str, Domain<'_>> = BTreeMap::new();
     for (automaton, constraint) in constraints {

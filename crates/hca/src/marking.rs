@@ -17,17 +17,17 @@ impl Marking {
         Self { words: vec![0; locations.div_ceil(64)] }
     }
 
-    /// Whether no location is active: the program has ended.
+    /// Returns whether no location is active: the program has ended.
     pub fn is_empty(&self) -> bool {
         self.words.iter().all(|&word| word == 0)
     }
 
-    /// How many locations are active.
+    /// Returns how many locations are active.
     pub fn len(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// Whether a location is active.
+    /// Returns whether a location is active.
     pub fn contains(&self, location: LocationId) -> bool {
         self.words.get(location.0 as usize / 64).is_some_and(|word| word >> (location.0 % 64) & 1 == 1)
     }
@@ -48,7 +48,7 @@ impl Marking {
             .flat_map(|(at, &word)| bits(word).map(move |bit| LocationId(at as u32 * 64 + bit)))
     }
 
-    /// Whether any location of a range is active.
+    /// Returns whether any location of a range is active.
     #[inline]
     pub(crate) fn intersects(&self, range: &Range<u32>) -> bool {
         masks(range).any(|(at, mask)| self.words.get(at).is_some_and(|word| word & mask != 0))

@@ -82,7 +82,7 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// What is marked.
+    /// Returns what is marked.
     pub const fn marking(&self) -> &Marking {
         &self.marking
     }
@@ -201,7 +201,7 @@ impl Stepper {
         &self.marking
     }
 
-    /// Where it is, to come back to.
+    /// Returns where it is, to come back to.
     pub fn standing(&self) -> Standing {
         let (marking, aside) = (self.marking.clone(), self.aside.clone());
         Standing { marking, aside, times: self.times.clone() }
@@ -220,7 +220,7 @@ impl Stepper {
         Position { marking: self.marking.clone(), clocks: clocks.collect(), lasted: lasted.collect() }
     }
 
-    /// Whether the clock of an element runs: the element is marked, or the first part of a composite is.
+    /// Returns whether the clock of an element runs: the element is marked, or the first part of a composite is.
     fn is_running(&self, owner: Element) -> bool {
         let first = match owner {
             Element::Location(_) => Some(owner),
@@ -272,7 +272,7 @@ impl Stepper {
         &self.aside
     }
 
-    /// What is asserted and not set aside, each goal once, in alphabetical order.
+    /// Returns what is asserted and not set aside, each goal once, in alphabetical order.
     pub fn goals(&self) -> Vec<SmolStr> {
         if self.aside.is_empty() {
             return self.automaton.goals(&self.marking);
@@ -341,7 +341,7 @@ impl Stepper {
         left.collect()
     }
 
-    /// Whether time alone may change what happens next: a clock runs, or a condition may come to have lasted.
+    /// Returns whether time alone may change what happens next: a clock runs, or a condition may come to have lasted.
     pub fn depends_on_time(&self) -> bool {
         !self.running_clocks().is_empty()
             || self.automaton.held.iter().zip(&self.times.unsatisfied).any(|(held, unsatisfied)| {
@@ -350,7 +350,7 @@ impl Stepper {
             })
     }
 
-    /// Whether the program has ended.
+    /// Returns whether the program has ended.
     pub fn is_done(&self) -> bool {
         self.marking.is_empty()
     }
@@ -384,7 +384,7 @@ impl Stepper {
         asked
     }
 
-    /// What the marked locations set of the program's own variables, as variable and value number.
+    /// Returns what the marked locations set of the program's own variables, as variable and value number.
     pub fn settings(&self) -> impl Iterator<Item = (VariableId, u32)> + '_ {
         let marked = self.marking.iter().filter(|location| !self.aside.contains(*location));
         let marked = marked.filter_map(|location| self.automaton.location(location));
@@ -517,7 +517,7 @@ impl Stepper {
         }
     }
 
-    /// Whether anything in a range of locations will be marked.
+    /// Returns whether anything in a range of locations will be marked.
     fn is_left(&self, range: &std::ops::Range<u32>) -> bool {
         self.next.intersects(range)
             || self.times.open.iter().any(|&choice| is_inside(&self.automaton, choice, range))
@@ -736,7 +736,7 @@ impl Stepper {
         data.is_some_and(|data| data.children.iter().any(|&child| self.completes(child)))
     }
 
-    /// Whether what is done under a lock completes; that what is locked comes true completes nothing.
+    /// Returns whether what is done under a lock completes; that what is locked comes true completes nothing.
     fn body_completes(&self, lock: CompositeId) -> bool {
         let body = self.automaton.composite(lock).and_then(|lock| lock.children.last());
         body.is_some_and(|&body| self.completes(body))
@@ -810,7 +810,7 @@ fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: 
     }
 }
 
-/// Whether a composite is in a range of locations.
+/// Returns whether a composite is in a range of locations.
 fn is_inside(automaton: &Automaton, composite: CompositeId, range: &std::ops::Range<u32>) -> bool {
     automaton.composite(composite).is_some_and(|it| range.contains(&it.locations.start))
 }
@@ -833,7 +833,7 @@ fn start_lock(automaton: &Automaton, id: LockId, next: &mut Marking, times: &mut
     next.insert(lock.waiting);
 }
 
-/// Whether what a program does depends on time, locks or choices.
+/// Returns whether what a program does depends on time, locks or choices.
 const fn is_timed(automaton: &Automaton) -> bool {
     !(automaton.clocks.is_empty() && automaton.locks.is_empty() && automaton.choices.is_empty())
 }
@@ -876,12 +876,12 @@ fn matters_to_others(automaton: &Automaton) -> Vec<bool> {
     matters
 }
 
-/// Whether something counts when a child of a composite completes.
+/// Returns whether something counts when a child of a composite completes.
 fn is_rewarded(automaton: &Automaton, composite: CompositeId) -> bool {
     automaton.choice(composite).is_some_and(|choice| choice.rewards().is_some())
 }
 
-/// Whether a composite starts its body again and again.
+/// Returns whether a composite starts its body again and again.
 fn repeats(composite: &Composite, locations: &[Location]) -> bool {
     let first = locations.get(composite.locations.start as usize);
     composite.kind == CompositeKind::Guarded
@@ -890,7 +890,8 @@ fn repeats(composite: &Composite, locations: &[Location]) -> bool {
         })
 }
 
-/// Whether a guard holds: its constraint is entailed, or for a barred guard it is not; with HELD, whether it has lasted.
+/// Returns whether a guard holds: its constraint is entailed, or for a barred guard it is not; with HELD, whether it
+/// has lasted.
 #[inline]
 fn holds(automaton: &Automaton, id: TestId, known: impl Knowledge, is_held: &[bool]) -> bool {
     let Some(test) = automaton.tests.get(id.0 as usize) else { return true };

@@ -61,7 +61,7 @@ impl StepObserver for TraceStep {
 }
 
 impl TraceStep {
-    /// What is to be seen at the start of step `step`.
+    /// Returns what is to be seen at the start of step `step`.
     pub fn at(stepper: &Stepper, step: u32) -> Self {
         let automaton = stepper.automaton();
         let marking = stepper.marking();

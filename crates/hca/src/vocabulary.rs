@@ -33,7 +33,7 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// How many value numbers there are.
+    /// Returns how many value numbers there are.
     pub const fn value_count(&self) -> u32 {
         self.values.len() as u32 + if self.closed { 0 } else { 1 }
     }

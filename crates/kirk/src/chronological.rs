@@ -225,7 +225,7 @@ impl<'m> ChronologicalSearch<'m> {
         }
     }
 
-    /// What to do next in the present state.
+    /// Returns what to do next in the present state.
     fn next(&mut self) -> Result<Next, Unplannable> {
         if let Some(&decision) = self.frontier.first() {
             return Ok(Next::Choice(Kind::Decision(decision)));
@@ -507,7 +507,7 @@ impl<'m> ChronologicalSearch<'m> {
         self.is_consistent_after(|search| search.stn.insert_all(&edges, tag))
     }
 
-    /// Whether what is added to the network of times is consistent.
+    /// Returns whether what is added to the network of times is consistent.
     fn is_consistent_after(
         &mut self,
         add: impl FnOnce(&mut Self) -> Result<(), Inconsistency>,
@@ -552,7 +552,7 @@ impl<'m> ChronologicalSearch<'m> {
         self.is_selected_arc[self.model.conditions.labels[label].arc]
     }
 
-    /// Whether one interval ends at least `gap` before another starts, in every schedule.
+    /// Returns whether one interval ends at least `gap` before another starts, in every schedule.
     fn is_before(&mut self, first: LabelId, then: LabelId, gap: i64) -> Result<bool, Unplannable> {
         let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
         let room = |times: &[i64], later: PointId, earlier: PointId| {

@@ -51,12 +51,12 @@ pub(crate) struct VariableIndex {
 }
 
 impl VariableIndex {
-    /// Where the squares have a pair of literals.
+    /// Returns where the squares have a pair of literals.
     fn cell(&self, left: LiteralId, right: LiteralId) -> usize {
         usize::from(left) * self.num_literals + usize::from(right)
     }
 
-    /// Which literals conflict with one.
+    /// Returns which literals conflict with one.
     fn conflicts_of(&self, literal: LiteralId) -> &[bool] {
         let first = usize::from(literal) * self.num_literals;
         &self.conflicts[first..first + self.num_literals]
@@ -121,7 +121,7 @@ impl Conditions {
         conditions
     }
 
-    /// Whether two labels cannot hold together.
+    /// Returns whether two labels cannot hold together.
     pub(crate) fn conflict(&self, left: LabelId, right: LabelId) -> bool {
         let (left, right) = (&self.labels[left], &self.labels[right]);
         let variable = &self.variables[left.variable];
@@ -130,38 +130,38 @@ impl Conditions {
             && variable.conflicts[variable.cell(left.literal, right.literal)]
     }
 
-    /// Whether one change of a variable that keeps its value must be over before another begins (SPEC 10.2).
+    /// Returns whether one change of a variable that keeps its value must be over before another begins (SPEC 10.2).
     pub(crate) fn exclude(&self, left: LabelId, right: LabelId) -> bool {
         let (left, right) = (&self.labels[left], &self.labels[right]);
         left.variable == right.variable
             && (left.is_changing || right.is_changing || left.literal != right.literal)
     }
 
-    /// Whether no value of a variable that keeps its value is accepted by both of two requirements.
+    /// Returns whether no value of a variable that keeps its value is accepted by both of two requirements.
     pub(crate) fn contradict(&self, left: LabelId, right: LabelId) -> bool {
         let (left, right) = (&self.labels[left], &self.labels[right]);
         let variable = &self.variables[left.variable];
         left.variable == right.variable && variable.conflicts[variable.cell(left.literal, right.literal)]
     }
 
-    /// Whether a change gives its variable a value that requirement `ask` accepts.
+    /// Returns whether a change gives its variable a value that requirement `ask` accepts.
     pub(crate) fn gives(&self, change: LabelId, ask: LabelId) -> bool {
         let (change, ask) = (&self.labels[change], &self.labels[ask]);
         let variable = &self.variables[ask.variable];
         change.variable == ask.variable && variable.supports[variable.cell(change.literal, ask.literal)]
     }
 
-    /// Whether a change gives its variable this value.
+    /// Returns whether a change gives its variable this value.
     pub(crate) fn gives_value(&self, change: LabelId, value: ValueId) -> bool {
         self.labels[change].value == Some(value)
     }
 
-    /// Whether requirement `ask` cannot continue during or after a change.
+    /// Returns whether requirement `ask` cannot continue during or after a change.
     pub(crate) fn breaks(&self, change: LabelId, ask: LabelId) -> bool {
         self.labels[change].is_changing || !self.gives(change, ask)
     }
 
-    /// Whether `tell` is an assertion that makes requirement `ask` hold.
+    /// Returns whether `tell` is an assertion that makes requirement `ask` hold.
     pub(crate) fn supports(&self, tell: LabelId, ask: LabelId) -> bool {
         let (tell, ask) = (&self.labels[tell], &self.labels[ask]);
         let variable = &self.variables[ask.variable];

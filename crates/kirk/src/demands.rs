@@ -69,7 +69,7 @@ impl ModelUse {
         if self.level.is_some() { self.end } else { self.moment() }
     }
 
-    /// Whether a level keeps a bound that this use can break.
+    /// Returns whether a level keeps a bound that this use can break.
     pub(crate) const fn allows(&self, level: i64, bound: i64) -> bool {
         excess(self.change, level, bound) <= 0
     }
@@ -80,7 +80,7 @@ impl ModelUse {
     }
 }
 
-/// How far a level is beyond a bound that this kind of change can break; not positive if it keeps the bound.
+/// Returns how far a level is beyond a bound that this kind of change can break; not positive if it keeps the bound.
 pub(crate) const fn excess(change: Change, level: i64, bound: i64) -> i64 {
     if matches!(change, Change::Produces) { level - bound } else { bound - level }
 }
@@ -129,7 +129,7 @@ pub(crate) struct ModelGoal {
 }
 
 impl ModelGoal {
-    /// What the goal is of a plan.
+    /// Returns what the goal is of a plan.
     pub(crate) fn sum(&self, model: &Model, plan: &Plan) -> Result<i64, Unplannable> {
         let selected = self.by_arc.iter().filter(|(arc, _)| plan.selected_arcs[arc.index()]);
         let by_arc: i64 = selected.map(|&(_, weight)| weight).sum();
@@ -180,7 +180,7 @@ impl LastingVariable {
 }
 
 impl Demands {
-    /// What the selected activities are worth, and the earliest end.
+    /// Returns what the selected activities are worth, and the earliest end.
     pub(crate) fn quality(&self, selected_arcs: &[bool], windows: &[Option<Window>]) -> Quality {
         let mut quality = Quality::default();
         for worth in self.worths.iter().filter(|worth| selected_arcs[worth.arc.index()]) {
@@ -201,12 +201,12 @@ impl Demands {
         departures.filter_map(|&[before, movement]| Some((movement, labels[before].value?))).collect()
     }
 
-    /// How many uses the network has.
+    /// Returns how many uses the network has.
     pub(crate) fn num_uses(&self) -> usize {
         self.resources.iter().map(|resource| resource.uses.len()).sum()
     }
 
-    /// Whether alternatives of the same shape and bounds may still be different.
+    /// Returns whether alternatives of the same shape and bounds may still be different.
     pub(crate) fn tells_alternatives_apart(&self) -> bool {
         !self.variables.is_empty() || !self.resources.is_empty() || !self.goals.is_empty()
     }
@@ -358,7 +358,7 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
         .collect()
 }
 
-/// What each meter of a movement costs that is not counted in its worth yet, as it is once its path is known.
+/// Returns what each meter of a movement costs that is not counted in its worth yet, as it is once its path is known.
 fn cost_per_meter(network: &Network, arrival: LabelId) -> Option<Rational> {
     let movement = network.labels[arrival.index()].arc;
     if network.arcs[movement.index()].kind == ArcKind::Span {

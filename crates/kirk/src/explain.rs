@@ -39,7 +39,7 @@ impl<'t> Effort<'t> {
         Self { searches: (1_000_000 / size).clamp(60, 5_000), conflicts: MAX_CONFLICTS, termination }
     }
 
-    /// Whether there is nothing left to spend.
+    /// Returns whether there is nothing left to spend.
     pub(crate) const fn is_exhausted(&self) -> bool {
         self.searches == 0 || self.conflicts == 0
     }
@@ -49,7 +49,7 @@ impl<'t> Effort<'t> {
         self.searches > 0
     }
 
-    /// What the solver says of a part of a problem, unless that takes too long.
+    /// Returns what the solver says of a part of a problem, unless that takes too long.
     pub(crate) fn solve(&mut self, model: &Model, part: solver::Part<'_>) -> Option<Refuted> {
         let mut is_stopped = false;
         let mut is_spent = |stats: &Stats| {
@@ -79,9 +79,9 @@ pub(crate) enum Refuted {
     By(Option<Vec<Member>>),
 }
 
-/// Whether `members` alone make every completion of `choices` fail: the definition of a conflict. Bounds that are not
-/// members do not count; conditions that are not members need no assertion and threaten nothing, but assertions still
-/// carry requirements. `None` if that takes too long to find out or times do not fit.
+/// Returns whether `members` alone make every completion of `choices` fail: the definition of a conflict. Bounds that
+/// are not members do not count; conditions that are not members need no assertion and threaten nothing, but assertions
+/// still carry requirements. `None` if that takes too long to find out or times do not fit.
 pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) -> Option<bool> {
     let model = Model::new(network, None).ok()?;
     let mut unlimited = Unlimited;
@@ -93,8 +93,8 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
     part.is_refuted(&mut effort)
 }
 
-/// Why no plan makes `choices`, where none does: reasons that rest on these choices and on any others, and on nothing
-/// that `choices` leave out. Empty if that takes too long to find out, times do not fit, or there is a plan.
+/// Returns why no plan makes `choices`, where none does: reasons that rest on these choices and on any others, and on
+/// nothing that `choices` leave out. Empty if that takes too long to find out, times do not fit, or there is a plan.
 pub fn explain_choices(
     network: &Network,
     choices: &[Choice],
@@ -331,8 +331,8 @@ impl<'m> Part<'m> {
         self.assumed[decision] = alternative;
     }
 
-    /// Whether the solver proves that the part has no plan, or finds one; `None` if that takes too long, or if gaps
-    /// alone decide.
+    /// Returns whether the solver proves that the part has no plan, or finds one; `None` if that takes too long, or if
+    /// gaps alone decide.
     pub(crate) fn is_refuted(&self, effort: &mut Effort<'_>) -> Option<bool> {
         Some(matches!(self.refute(effort, false)?, Refuted::By(_)))
     }

@@ -71,7 +71,7 @@ pub(crate) fn order<Reason: Copy>(
     }
 }
 
-/// What a circle rests on: from any event that waits, back along those that it waits for.
+/// Returns what a circle rests on: from any event that waits, back along those that it waits for.
 fn circle<Reason: Copy>(
     node: NodeId,
     before: &[Before<Reason>],

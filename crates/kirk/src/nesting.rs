@@ -55,7 +55,8 @@ impl Nesting {
         Some(nesting)
     }
 
-    /// Which of two arcs is over when the other begins, if the program says so. Takes time linear in their depth.
+    /// Returns which of two arcs is over when the other begins, if the program says so. Takes time linear in their
+    /// depth.
     pub(crate) fn relation(&self, left: ArcId, right: ArcId) -> Relation {
         let block_of = |arc: ArcId| self.block_of.get(arc.index()).copied().flatten();
         let (Some(own), Some(others)) = (block_of(left), block_of(right)) else { return Relation::Open };

@@ -38,7 +38,7 @@ impl Search {
         }
     }
 
-    /// Whether it learns from failures.
+    /// Returns whether it learns from failures.
     pub(crate) const fn learns(self) -> bool {
         matches!(self, Self::ConflictDirected | Self::BestFirst)
     }
@@ -86,7 +86,7 @@ impl Default for Options {
 
 /// Decides when a search must stop without an answer. Asked once per alternative tried.
 pub trait Termination {
-    /// Whether to stop now.
+    /// Returns whether to stop now.
     fn should_stop(&mut self, stats: &Stats) -> bool;
 }
 
@@ -189,7 +189,7 @@ impl Outcome {
         }
     }
 
-    /// What does not fit, in the author's terms. `None` if everything fits.
+    /// Returns what does not fit, in the author's terms. `None` if everything fits.
     pub fn unplannable_message(&self, network: &Network) -> Option<String> {
         self.unplannable.map(|what| what.message(network))
     }

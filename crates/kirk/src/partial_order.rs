@@ -226,7 +226,7 @@ impl Making<'_> {
         Ok(self.stn.sweep_distances(point(self.model.start), &self.model.order, from_start, to_start)?)
     }
 
-    /// Whether every schedule has `later − earlier ≥ least`.
+    /// Returns whether every schedule has `later − earlier ≥ least`.
     fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, Unplannable> {
         let (at_latest, at_earliest) = (self.windows.0[earlier.index()], self.windows.1[later.index()]);
         let ends_by = at_latest != INFINITE
@@ -300,7 +300,7 @@ impl Making<'_> {
         }
     }
 
-    /// Whether one event happens before another in every schedule (SPEC 10.4).
+    /// Returns whether one event happens before another in every schedule (SPEC 10.4).
     fn happens_before(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
         if earlier == later {
             return Ok(true);
@@ -308,14 +308,15 @@ impl Making<'_> {
         Ok(self.is_entailed(earlier, later, 0)? && self.is_before_within_instant(earlier, later)?)
     }
 
-    /// Whether one event that is no later than another in any schedule happens before it, where they are at one time.
+    /// Returns whether one event that is no later than another in any schedule happens before it, where they are at one
+    /// time.
     fn is_before_within_instant(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
         // Only where both are at one instant in every schedule it takes more.
         let may_be_apart = self.time(earlier) != self.time(later) || !self.is_entailed(later, earlier, 0)?;
         Ok(may_be_apart || self.is_noted(earlier, later))
     }
 
-    /// Whether one event leads to another along what happens before what within their instant.
+    /// Returns whether one event leads to another along what happens before what within their instant.
     fn is_noted(&self, earlier: NodeId, later: NodeId) -> bool {
         let mut seen: BTreeSet<NodeId> = BTreeSet::new();
         let mut open = vec![later];
@@ -376,7 +377,7 @@ impl Making<'_> {
         Ok(())
     }
 
-    /// Where an event stands among all.
+    /// Returns where an event stands among all.
     fn position(&self, node: NodeId) -> u32 {
         self.positions[node]
     }
@@ -496,7 +497,7 @@ impl Making<'_> {
         Ok(true)
     }
 
-    /// What must be how far before what, where a threat is put in order.
+    /// Returns what must be how far before what, where a threat is put in order.
     fn kept_apart(&self, Ordering { first, then }: Ordering) -> (NodeId, NodeId, i64) {
         let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
         (end, start, self.gap_before(then, self.model.gap))
@@ -781,7 +782,7 @@ impl Making<'_> {
     }
 }
 
-/// Whether the network took it.
+/// Returns whether the network took it.
 fn done(result: Result<(), Inconsistency>) -> Result<bool, Unplannable> {
     match result {
         Ok(()) => Ok(true),

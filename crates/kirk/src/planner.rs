@@ -89,7 +89,7 @@ impl Planner {
     }
 }
 
-/// What a plan chose.
+/// Returns what a plan chose.
 fn choices_of(model: &Model, plan: &Plan) -> Choices {
     let mut choices = Choices {
         alternatives: vec![None; model.decisions.len()].into(),

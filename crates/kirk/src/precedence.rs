@@ -10,7 +10,7 @@ use crate::trace::{Departing, TreeChoice};
 /// `to − from ≤ weight`.
 pub(crate) type StnEdge = (PointId, PointId, i64);
 
-/// What a choice says about times.
+/// Returns what a choice says about times.
 pub(crate) fn edges(model: &Model, choice: TreeChoice) -> Vec<StnEdge> {
     match choice {
         TreeChoice::Decision { .. }

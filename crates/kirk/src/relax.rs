@@ -48,7 +48,7 @@ const WIDEST: i64 = 1 << 50;
 /// Planning without the gap may meet so many conflicts.
 const MAX_CONFLICTS: u64 = 10_000;
 
-/// Whether there is a plan if conflicting intervals may touch.
+/// Returns whether there is a plan if conflicting intervals may touch.
 pub(crate) fn has_plan_without_gap(
     network: &Network,
     model: &Model,
@@ -188,7 +188,7 @@ impl Trial<'_> {
         Ok(Some(plans))
     }
 
-    /// What planning makes of a value.
+    /// Returns what planning makes of a value.
     fn plans_with(
         &mut self,
         arcs: &[ArcId],

@@ -124,7 +124,7 @@ impl Replay {
         result
     }
 
-    /// What the states from the root to `tree_node` had added until `step`.
+    /// Returns what the states from the root to `tree_node` had added until `step`.
     fn frames(&self, trace: &Trace, tree_node: TreeNodeId, step: usize) -> Vec<Frame> {
         let mut path = Vec::new();
         let mut at = Some(tree_node);

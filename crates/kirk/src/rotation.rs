@@ -29,20 +29,20 @@ impl Bound {
         self.weight - (times[self.to] - times[self.from])
     }
 
-    /// Whether it orders two events of one instant: the `from` of the difference is the later one.
+    /// Returns whether it orders two events of one instant: the `from` of the difference is the later one.
     const fn orders_an_instant(&self) -> bool {
         matches!(self.member, Member::Bound(Constraint::Lower(_))) && self.weight == 0
     }
 
-    /// Whether it holds, and orders no instant in which others may have another order.
+    /// Returns whether it holds, and orders no instant in which others may have another order.
     fn surely_holds(&self, times: &TiVec<NodeId, i64>) -> bool {
         let slack = self.slack(times);
         slack > 0 || slack == 0 && !self.orders_an_instant()
     }
 }
 
-/// Which of `members` are needed, by a solution of them without `dropped`: those that alone keep it, or what it becomes, from being
-/// one of all.
+/// Returns which of `members` are needed, by a solution of them without `dropped`: those that alone keep it, or what it
+/// becomes, from being one of all.
 pub(crate) fn needed(
     mission: &Model,
     members: &[Member],
@@ -114,7 +114,7 @@ fn bounds(mission: &Model, members: &[Member], solution: &Choices) -> Vec<Bound>
     members.iter().filter_map(bound).collect()
 }
 
-/// Whether more than bounds may tell where an event is.
+/// Returns whether more than bounds may tell where an event is.
 fn fixed(mission: &Model, members: &[Member]) -> TiVec<NodeId, bool> {
     let mut is_fixed: TiVec<NodeId, bool> = vec![false; mission.num_nodes].into();
     let mut fix = |node: NodeId| is_fixed[mission.representatives[node]] = true;

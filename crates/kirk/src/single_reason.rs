@@ -135,7 +135,8 @@ impl Shrinking<'_, '_> {
         self.members = members.to_vec();
     }
 
-    /// Whether the members are a contradiction; if so, only those stay that the proof needs. `None` if no one knows.
+    /// Returns whether the members are a contradiction; if so, only those stay that the proof needs. `None` if no one
+    /// knows.
     fn is_refuted(&mut self) -> Option<bool> {
         Some(matches!(self.refute()?, Refuted::By(_)))
     }

@@ -287,7 +287,7 @@ impl From<Choice> for TreeChoice {
 }
 
 impl TreeChoice {
-    /// Whether both are alternatives of one choice point.
+    /// Returns whether both are alternatives of one choice point.
     pub fn is_alternative_of(self, other: Self) -> bool {
         match (self, other) {
             (Self::Decision { decision, .. }, Self::Decision { decision: other, .. }) => decision == other,
@@ -348,12 +348,12 @@ impl Trace {
         }
     }
 
-    /// Whether this is the record of a conflict-driven search.
+    /// Returns whether this is the record of a conflict-driven search.
     pub fn is_conflict_driven(&self) -> bool {
         matches!(self.events.first(), Some(Entry { event: Event::Begin(_), .. }))
     }
 
-    /// Whether two states are alternatives of one choice point. Those of one choice point stand side by side.
+    /// Returns whether two states are alternatives of one choice point. Those of one choice point stand side by side.
     pub fn are_alternatives(&self, one: TreeNodeId, other: TreeNodeId) -> bool {
         let node = |id: TreeNodeId| self.tree.get(id as usize);
         let (Some(one), Some(other)) = (node(one), node(other)) else { return false };
@@ -364,7 +364,7 @@ impl Trace {
         one.parent == other.parent && is_one_point
     }
 
-    /// What a search has learned by a step, each with the step in which it did.
+    /// Returns what a search has learned by a step, each with the step in which it did.
     pub fn learned(&self, step: usize) -> impl Iterator<Item = (usize, &[TreeChoice])> {
         self.events.iter().take(step.saturating_add(1)).enumerate().filter_map(|(step, entry)| {
             match &entry.event {

@@ -88,7 +88,7 @@ fn event_json(network: &Network, event: &Event) -> Value {
     }
 }
 
-/// What only searches that learn do.
+/// Returns what only searches that learn do.
 fn learning_json(network: &Network, event: &Event) -> Value {
     let choices = |choices: &[TreeChoice]| -> Vec<Value> {
         choices.iter().map(|&choice| choice_json(network, choice)).collect()

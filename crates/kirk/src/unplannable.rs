@@ -54,7 +54,8 @@ impl From<stn::Overflow> for Unplannable {
     }
 }
 
-/// What people call an event: its innermost name, where it has one, otherwise that of the nearest event after it.
+/// Returns what people call an event: its innermost name, where it has one, otherwise that of the nearest event after
+/// it.
 fn name(network: &Network, event: NodeId) -> Option<String> {
     let mut seen = vec![false; network.nodes.len()];
     let mut open = VecDeque::from([event]);

@@ -20,8 +20,8 @@ pub(crate) struct Told<'a> {
     pub(crate) cycle: &'a [CycleMember],
 }
 
-/// What contradicts what along a negative cycle, in the author's terms: what needs more time than something else leaves
-/// it, and how much too much that is where something allows a time. `None` for an empty cycle.
+/// Returns what contradicts what along a negative cycle, in the author's terms: what needs more time than something
+/// else leaves it, and how much too much that is where something allows a time. `None` for an empty cycle.
 pub fn contradiction(network: &Network, cycle: &[CycleMember]) -> Option<String> {
     let told = Told { network, kind: FailureKind::Temporal, choices: &[], conflict: &[], cycle };
     let bounds = told.bounds()?;
@@ -79,7 +79,7 @@ fn count<K>(all: &mut Vec<Counted<K>>, kind: K, name: String) {
     }
 }
 
-/// How many bounds were told.
+/// Returns how many bounds were told.
 fn counted<K>(all: &[Counted<K>]) -> usize {
     all.iter().map(|known| known.count).sum()
 }
@@ -235,7 +235,7 @@ impl Told<'_> {
         })
     }
 
-    /// What the environment chooses, and what that leaves no times for.
+    /// Returns what the environment chooses, and what that leaves no times for.
     fn controllability(&self) -> String {
         let (mut natures, mut rest) = (Vec::new(), Vec::new());
         let push = |names: &mut Vec<String>, name: String| {
@@ -366,7 +366,7 @@ impl Told<'_> {
         }
     }
 
-    /// What leaves too little time, where the conflict has no cycle to show.
+    /// Returns what leaves too little time, where the conflict has no cycle to show.
     fn room(&self) -> Option<String> {
         let mut limits: Vec<String> = Vec::new();
         for member in self.conflict {
@@ -383,7 +383,7 @@ impl Told<'_> {
         (!limits.is_empty()).then(|| joined(&limits))
     }
 
-    /// What needs more time than something else leaves it.
+    /// Returns what needs more time than something else leaves it.
     fn bounds(&self) -> Option<String> {
         // In textual order, whatever way round the cycle goes.
         let mut needs: Vec<Counted<Need>> = Vec::new();
@@ -460,7 +460,7 @@ impl Told<'_> {
         })
     }
 
-    /// What takes the time of a cycle in which nothing with a name does.
+    /// Returns what takes the time of a cycle in which nothing with a name does.
     fn unnamed_need(&self) -> String {
         let has = |wanted: fn(Constraint) -> bool| self.cycle.iter().any(|it| wanted(it.constraint));
         let what = if has(|it| matches!(it, Constraint::Order(_))) {
@@ -479,7 +479,7 @@ fn shown(time: Option<Time>) -> String {
     time.map_or_else(|| "a time too large to represent".to_owned(), Time::readable)
 }
 
-/// Whether a bound says something to the author: glue does not.
+/// Returns whether a bound says something to the author: glue does not.
 pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
     let arc = match member.constraint {
         Constraint::Lower(arc) | Constraint::Upper(arc) => &network.arcs[arc.index()],
@@ -531,7 +531,7 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     lines.iter().map(|line| network.readable(line)).collect()
 }
 
-/// Whether the bounds of an arc are rules of the language, which no author wrote.
+/// Returns whether the bounds of an arc are rules of the language, which no author wrote.
 pub(crate) fn is_structural(kind: ArcKind) -> bool {
     matches!(
         kind,
@@ -539,7 +539,7 @@ pub(crate) fn is_structural(kind: ArcKind) -> bool {
     )
 }
 
-/// What an author calls an arc.
+/// Returns what an author calls an arc.
 pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
     if let Some(occurrence) = arc.occurrence {
         let occurrence = &network.occurrences[occurrence.index()];
@@ -577,8 +577,9 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
 /// What a block is called that says nothing by which to tell it from others.
 const UNNAMED_BLOCK: &str = "the bounded block";
 
-/// What tells a block with bounds from others: its first and its last activity in the text, `the block from Drive to Photo`.
-/// Its line would not do: a text that means the same in other places keeps its plan, and so the sentences about it.
+/// Returns what tells a block with bounds from others: its first and its last activity in the text, `the block from
+/// Drive to Photo`. Its line would not do: a text that means the same in other places keeps its plan, and so the
+/// sentences about it.
 fn block_name(network: &Network, arc: &Arc) -> String {
     let is_own = |block: &&Block| match &block.kind {
         BlockKind::Scope { arcs, .. } => {
@@ -628,7 +629,7 @@ fn interval_name(network: &Network, label: LabelId) -> String {
     arc_name(network, &network.arcs[network.labels[label.index()].arc.index()])
 }
 
-/// Who uses a resource.
+/// Returns who uses a resource.
 fn use_owner(network: &Network, used: &Use) -> String {
     match used.owner {
         Some(owner) => network.occurrences[owner.index()].name.to_string(),
@@ -636,7 +637,7 @@ fn use_owner(network: &Network, used: &Use) -> String {
     }
 }
 
-/// What the minimum of an arc asks for. A negative one is how far its second event may come before the first.
+/// Returns what the minimum of an arc asks for. A negative one is how far its second event may come before the first.
 fn needing(arc: &Arc) -> String {
     match arc.lower.checked_neg().filter(|ahead| ahead.is_positive()) {
         Some(ahead) => format!("allows only {} in the other direction", ahead.readable()),

@@ -98,7 +98,7 @@ fn crossings(drawing: &NetworkDrawing) -> usize {
     count
 }
 
-/// Whether two segments cross, not counting where one ends on the other.
+/// Returns whether two segments cross, not counting where one ends on the other.
 fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     let side = |from: Point, to: Point, point: Point| {
         let product = (to.x - from.x) * (point.y - from.y) - (to.y - from.y) * (point.x - from.x);

@@ -104,7 +104,7 @@ impl Contents {
         self.named.iter().find_map(among)
     }
 
-    /// How many events a box hides.
+    /// Returns how many events a box hides.
     pub(crate) fn events(&self, fold: &Fold) -> u32 {
         let (first, last) = (self.first_inside(fold.first), fold.last);
         let ends = if fold.start == fold.end { vec![fold.start] } else { vec![fold.start, fold.end] };
@@ -112,7 +112,7 @@ impl Contents {
         self.homed[last.index() + 1] - self.homed[first.index()] - ends
     }
 
-    /// Which of the boxes hides a node.
+    /// Returns which of the boxes hides a node.
     pub(crate) fn hider<'a>(&self, node: NodeId, folds: &'a [Fold]) -> Option<&'a Fold> {
         folds.iter().find(|fold| node != fold.start && node != fold.end && self.is_home(fold, node))
     }
@@ -122,12 +122,12 @@ impl Contents {
         self.homes[node.index()]
     }
 
-    /// Whether a block is the home of a node, or holds it.
+    /// Returns whether a block is the home of a node, or holds it.
     pub(crate) fn holds(&self, block: BlockId, node: NodeId) -> bool {
         self.home(node).is_some_and(|home| home >= self.first_inside(block) && home <= block)
     }
 
-    /// Whether the home of a node is behind a box.
+    /// Returns whether the home of a node is behind a box.
     fn is_home(&self, fold: &Fold, node: NodeId) -> bool {
         self.home(node).is_some_and(|home| home >= self.first_inside(fold.first) && home <= fold.last)
     }

@@ -110,7 +110,7 @@ impl Slide {
 }
 
 impl TextShape {
-    /// Where the text is when its row is moved, as far as it may be, between `left` and `right`.
+    /// Returns where the text is when its row is moved, as far as it may be, between `left` and `right`.
     pub fn rect_in_view(&self, left: f64, right: f64) -> Rect {
         let Some(slide) = self.slide else { return self.rect };
         slide.along_row().moved(self.rect, left, right)
@@ -196,7 +196,7 @@ impl NetworkDrawing {
         self.arc_slots.get(id.index()).and_then(|&slot| self.arcs.get(slot as usize))
     }
 
-    /// Where a node is, or the middle of the collapsed block that hides it.
+    /// Returns where a node is, or the middle of the collapsed block that hides it.
     pub fn anchor(&self, id: NodeId) -> Point {
         self.anchors.get(id.index()).copied().unwrap_or_default()
     }
@@ -260,8 +260,8 @@ impl NetworkDrawing {
         }
     }
 
-    /// What lies at `point`, or at most `tolerance` beside it: a node before a text before the nearest arc before the
-    /// innermost block.
+    /// Returns what lies at `point`, or at most `tolerance` beside it: a node before a text before the nearest arc
+    /// before the innermost block.
     pub fn pick(&self, point: Point, tolerance: f64) -> Option<Item> {
         let mut best: Option<(u8, f64, Item)> = None;
         self.index.visit(Rect::around(point, tolerance), 0.0, &mut |shape| {

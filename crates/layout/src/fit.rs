@@ -246,7 +246,7 @@ impl<'a> Fitter<'a> {
         fits.then_some(found)
     }
 
-    /// Whether all steps together are too many for the room, however they are arranged.
+    /// Returns whether all steps together are too many for the room, however they are arranged.
     fn are_too_many(&self) -> bool {
         let root = self.network.root.filter(|root| root.index() < self.network.blocks.len());
         let steps = root.map_or(0, |root| self.contents.steps(root));
@@ -285,7 +285,7 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// How many steps boxes may hold, from none to all of `most`, each about a third more than the one before.
+/// Returns how many steps boxes may hold, from none to all of `most`, each about a third more than the one before.
 fn grains(most: u32) -> Vec<u32> {
     let mut grains = if most == 0 { vec![0] } else { vec![0, 2, 3] };
     while let Some(&last) = grains.last().filter(|&&last| last < most) {

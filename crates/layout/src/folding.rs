@@ -40,7 +40,7 @@ const MIN_ACTIVITY: u32 = 2;
 const MIN_RUN: u32 = 3;
 
 impl Folding {
-    /// What is folded of a network with blocks under `root`. Takes the time of what is drawn.
+    /// Returns what is folded of a network with blocks under `root`. Takes the time of what is drawn.
     pub(crate) fn new(network: &Network, contents: &Contents, options: &Options, root: BlockId) -> Self {
         let folder = Folder { network, contents, options };
         let mut folding =
@@ -120,7 +120,8 @@ struct Folder<'a> {
 }
 
 impl Folder<'_> {
-    /// Which of the places in more detail a block lies in, if any; `Err` if it is one or holds one, so that it is open.
+    /// Returns which of the places in more detail a block lies in, if any; `Err` if it is one or holds one, so that it
+    /// is open.
     fn zone(&self, block: BlockId) -> Result<Option<usize>, ()> {
         let (low, high) = (self.contents.first_inside(block), block);
         for (at, finer) in self.options.detail.finer.iter().enumerate().rev() {
@@ -142,7 +143,7 @@ impl Folder<'_> {
         ends.start != ends.end && (is_fine || self.options.collapsed.contains(&block))
     }
 
-    /// How many blocks from the first of `children` on take one box together, or 1.
+    /// Returns how many blocks from the first of `children` on take one box together, or 1.
     fn run(&self, children: &[BlockId]) -> usize {
         let Some(Ok(zone)) = children.first().map(|&child| self.zone(child)) else { return 1 };
         let grain = self.grain(zone);
@@ -159,7 +160,7 @@ impl Folder<'_> {
         if count >= MIN_RUN { length.max(1) } else { 1 }
     }
 
-    /// How many steps a box may hold in a place in more detail, or elsewhere.
+    /// Returns how many steps a box may hold in a place in more detail, or elsewhere.
     fn grain(&self, zone: Option<usize>) -> u32 {
         let detail = &self.options.detail;
         zone.and_then(|at| detail.finer.get(at)).map_or(detail.grain, |finer| finer.grain)

@@ -173,8 +173,8 @@ impl Columns {
         self.members[column] = keyed.into_iter().map(|(_, vertex)| vertex).collect();
     }
 
-    /// How many pairs of lines between neighboring columns cross, counted by a tree of partial sums (Barth, Mutzel
-    /// and Jünger 2004).
+    /// Returns how many pairs of lines between neighboring columns cross, counted by a tree of partial sums (Barth,
+    /// Mutzel and Jünger 2004).
     fn crossings(&self) -> usize {
         let mut place = vec![0_usize; self.vertices.len()];
         for column in &self.members {

@@ -101,8 +101,8 @@ fn finish(
     drawing
 }
 
-/// What is written inside a node: its number, `D1` for a decision, `s` and `e` for the first and the last event;
-/// nothing in the dot of a fork or join.
+/// Returns what is written inside a node: its number, `D1` for a decision, `s` and `e` for the first and the last
+/// event; nothing in the dot of a fork or join.
 pub fn node_name(network: &Network, node: NodeId) -> SmolStr {
     let shape = &network.nodes[node.index()];
     match (shape.role, shape.decision) {

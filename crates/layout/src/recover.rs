@@ -284,7 +284,7 @@ impl Graph {
     }
 }
 
-/// Whether an arc is drawn over what lies beside it.
+/// Returns whether an arc is drawn over what lies beside it.
 fn is_spanning(arc: &Arc) -> bool {
     matches!(arc.kind, ArcKind::Span | ArcKind::Composite)
 }
@@ -334,7 +334,7 @@ fn push_parallel(
     tree.push(PartKind::Span { child, arcs, occurrence: None }, from, to, None)
 }
 
-/// What could not be reduced, as a graph.
+/// Returns what could not be reduced, as a graph.
 fn push_core(network: &Network, order: &Order, parts: &[PartId], tree: &mut Tree) -> PartId {
     let (start, end) = (network.start, network.end);
     let mut nodes: Vec<NodeId> = parts

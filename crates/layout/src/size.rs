@@ -208,7 +208,7 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// Whether a series holds an irregular graph, whose nodes cannot begin in one row and end in the next.
+    /// Returns whether a series holds an irregular graph, whose nodes cannot begin in one row and end in the next.
     fn has_core(&self, range: &std::ops::Range<u32>) -> bool {
         self.tree.children(range).iter().any(|&child| matches!(self.tree.part(child).kind, PartKind::Core(_)))
     }
@@ -298,18 +298,18 @@ pub(crate) struct Arch {
 }
 
 impl Arch {
-    /// How high its text reaches.
+    /// Returns how high its text reaches.
     pub(crate) fn top(&self) -> f64 {
         self.height + lifted(self.text_height)
     }
 }
 
-/// How far right of a fork its arcs begin to spread.
+/// Returns how far right of a fork its arcs begin to spread.
 pub(crate) fn lead_out(start: Clearance) -> f64 {
     start.after.max(start.beneath) + 2.0
 }
 
-/// How far left of a join its arcs have come together.
+/// Returns how far left of a join its arcs have come together.
 pub(crate) fn lead_in(end: Clearance) -> f64 {
     end.before.max(end.beneath) + 2.0 + ARROW_LENGTH
 }
@@ -339,7 +339,7 @@ pub(crate) fn fan_rows(branches: &[BranchSize]) -> FanRows {
     FanRows { offsets, gutter }
 }
 
-/// How far from its node an arch stands.
+/// Returns how far from its node an arch stands.
 fn arch_offset(rank: u32) -> f64 {
     ARCH_FIRST + ARCH_STEP * f64::from(rank)
 }

@@ -43,7 +43,7 @@ impl Default for Parts {
 }
 
 impl Parts {
-    /// Whether texts of this role are shown.
+    /// Returns whether texts of this role are shown.
     pub const fn shows_text(self, role: TextRole) -> bool {
         match role {
             TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds => self.bounds,
@@ -53,23 +53,23 @@ impl Parts {
         }
     }
 
-    /// Whether what the plan says this of is shown.
+    /// Returns whether what the plan says this of is shown.
     pub fn shows(self, standing: Standing) -> bool {
         self.unselected || standing != Standing::Unselected
     }
 }
 
-/// What `plan` says of an arc.
+/// Returns what `plan` says of an arc.
 pub(crate) fn arc_standing(plan: Option<&Plan>, arc: ArcId) -> Standing {
     standing(plan.map(|plan| plan.selected_arcs.get(arc.index()).copied().unwrap_or(false)))
 }
 
-/// What `plan` says of a node.
+/// Returns what `plan` says of a node.
 pub(crate) fn node_standing(plan: Option<&Plan>, node: NodeId) -> Standing {
     standing(plan.map(|plan| plan.selected_nodes.get(node.index()).copied().unwrap_or(false)))
 }
 
-/// What `plan` says of what a text belongs to.
+/// Returns what `plan` says of what a text belongs to.
 pub(crate) fn item_standing(
     plan: Option<&Plan>,
     item: Item,

@@ -123,7 +123,7 @@ fn row_size<'a>(runs: impl Iterator<Item = &'a Run>) -> TextSize {
     size
 }
 
-/// Whether a condition is written at its arc.
+/// Returns whether a condition is written at its arc.
 fn is_written(network: &Network, options: &Options, label: LabelId) -> bool {
     options.changes || !matches!(network.labels[label.index()].extent, Extent::Effect | Extent::Initial)
 }
@@ -167,7 +167,7 @@ pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
     (format_smolstr!("{}({})", label.verb(), label.text), role)
 }
 
-/// What a labeled interval means for whoever has it, in words: `requires ARM=OUT throughout`.
+/// Returns what a labeled interval means for whoever has it, in words: `requires ARM=OUT throughout`.
 pub fn label_words(label: &Label) -> String {
     let text = &label.text;
     match (label.mode, label.extent) {
@@ -229,7 +229,7 @@ pub fn activity_name(occurrence: &Occurrence) -> SmolStr {
     }
 }
 
-/// What kind of structure a block is, in the words of the language.
+/// Returns what kind of structure a block is, in the words of the language.
 pub fn structure_name(kind: &BlockKind) -> SmolStr {
     match kind {
         BlockKind::Leaf { .. } => SmolStr::new_static("step"),

@@ -49,8 +49,8 @@ pub fn threads(network: &Network) -> Vec<Thread> {
     threads
 }
 
-/// What a thread is called: its number, and the first activity that occurs in it or in its own branches. `following`
-/// are the threads from this one on.
+/// Returns what a thread is called: its number, and the first activity that occurs in it or in its own branches.
+/// `following` are the threads from this one on.
 pub fn thread_name(network: &Network, following: &[Thread]) -> Option<SmolStr> {
     let thread = following.first()?;
     let own = following.iter().take_while(|it| it.path.starts_with(&thread.path));

@@ -162,7 +162,7 @@ impl Tree {
         Branch { fork: first.or(known.fork), child: Some(child), join: last.or(known.join), ..known }
     }
 
-    /// Whether a part begins with a gap, so that no line leads into it.
+    /// Returns whether a part begins with a gap, so that no line leads into it.
     pub(crate) fn begins_with_nothing(&self, part: PartId) -> bool {
         match &self.part(part).kind {
             PartKind::Nothing => true,
@@ -173,7 +173,7 @@ impl Tree {
         }
     }
 
-    /// Whether a part ends with a gap, so that no line leads out of it.
+    /// Returns whether a part ends with a gap, so that no line leads out of it.
     pub(crate) fn ends_with_nothing(&self, part: PartId) -> bool {
         match &self.part(part).kind {
             PartKind::Nothing => true,

@@ -125,7 +125,7 @@ impl ControlProgram {
         }
     }
 
-    /// Whether the inputs of steps refer to the same things by number in both.
+    /// Returns whether the inputs of steps refer to the same things by number in both.
     pub fn has_names_of(&self, other: &Self) -> bool {
         self.names() == other.names()
     }

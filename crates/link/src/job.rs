@@ -164,7 +164,7 @@ pub const RULES: [Rule; 13] = {
 };
 
 impl Kind {
-    /// What holds for the kind.
+    /// Returns what holds for the kind.
     pub fn rule(self) -> &'static Rule {
         &RULES[self as usize]
     }
@@ -256,7 +256,7 @@ impl Request {
         JobKey(hasher.finish())
     }
 
-    /// Whether answering `earlier` is pointless once this is asked for.
+    /// Returns whether answering `earlier` is pointless once this is asked for.
     pub fn supersedes(&self, earlier: &Self) -> bool {
         match (self, earlier) {
             (Self::ImportMap { name: newer, .. }, Self::ImportMap { name: earlier, .. }) => newer == earlier,

@@ -52,7 +52,7 @@ impl Source {
         &self.text
     }
 
-    /// Whether this is its text.
+    /// Returns whether this is its text.
     pub(crate) fn is(&self, text: &str) -> bool {
         self.print == Print::of(text)
     }
@@ -62,7 +62,7 @@ impl Source {
         (self.text, self.since) = (text, since);
     }
 
-    /// How it came from the text of a revision, if that is known.
+    /// Returns how it came from the text of a revision, if that is known.
     pub fn shift_from(&self, revision: Option<u64>) -> Option<Shift> {
         let since = self.since.as_ref().filter(|since| Some(since.revision) == revision)?;
         Some(Shift::of(&since.edits))

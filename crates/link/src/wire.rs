@@ -32,7 +32,7 @@ pub fn write_request(request: &Request) -> Result<Vec<u8>, Error> {
     postcard::to_stdvec(&(text, request))
 }
 
-/// What a request is known by.
+/// Returns what a request is known by.
 pub(crate) fn bytes_of_request(request: &Request) -> Vec<u8> {
     // What has no bytes cannot be sent either, and needs no name.
     postcard::to_stdvec(request).unwrap_or_default()
@@ -86,7 +86,7 @@ enum Change<T> {
 
 /// A part that is shared.
 trait Shared: Clone + PartialEq {
-    /// Whether it is the very same.
+    /// Returns whether it is the very same.
     fn is(&self, other: &Self) -> bool;
 
     /// The same with its places moved; nothing if it has no places.

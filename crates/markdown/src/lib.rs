@@ -106,8 +106,8 @@ impl Block {
     }
 }
 
-/// What a link to a heading of these words says after `#`, as pages of repositories have it: small letters, dashes for
-/// spaces, and no other signs.
+/// Returns what a link to a heading of these words says after `#`, as pages of repositories have it: small letters,
+/// dashes for spaces, and no other signs.
 pub fn anchor(title: &str) -> String {
     let kept =
         title.trim().chars().filter(|letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_'));

@@ -147,7 +147,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether an event belongs to words.
+/// Returns whether an event belongs to words.
 fn is_inline(event: &Event<'_>) -> bool {
     match event {
         Event::Text(_)
@@ -184,7 +184,7 @@ struct Words {
 }
 
 impl Words {
-    /// Whether no tag is open.
+    /// Returns whether no tag is open.
     fn is_outside(&self) -> bool {
         self.before.is_empty()
     }

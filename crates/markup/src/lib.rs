@@ -25,7 +25,8 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// Whether a character only sets the direction of others: text with such marks can show other numbers than it has.
+/// Returns whether a character only sets the direction of others: text with such marks can show other numbers than it
+/// has.
 pub const fn sets_direction(letter: char) -> bool {
     matches!(letter,
         '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'

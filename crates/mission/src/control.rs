@@ -81,7 +81,7 @@ pub(crate) fn check_control(text: &str) -> Vec<Diagnostic> {
     found
 }
 
-/// Whether a program has anything to do with its plant: one whose variables are all its own fits every plant.
+/// Returns whether a program has anything to do with its plant: one whose variables are all its own fits every plant.
 fn speaks_of_plant(system: &System) -> bool {
     system.automaton.variables.iter().any(|variable| !variable.is_program_variable)
 }
@@ -109,7 +109,7 @@ struct ReadText {
 }
 
 impl ControlTexts {
-    /// What `text` comes to; a program without a plant of its own is bound to `plant`, if all its names fit.
+    /// Returns what `text` comes to; a program without a plant of its own is bound to `plant`, if all its names fit.
     pub(crate) fn read(&mut self, text: &Arc<str>, plant: Option<&Arc<str>>) -> &Control {
         let read = self.follow(text);
         match plant {
@@ -122,7 +122,7 @@ impl ControlTexts {
         }
     }
 
-    /// What is wrong with `text`.
+    /// Returns what is wrong with `text`.
     pub(crate) fn diagnostics(&mut self, text: &Arc<str>) -> &[Diagnostic] {
         &self.follow(text).found
     }

@@ -70,12 +70,14 @@ pub(crate) fn motions(
     motions.into_iter().map(|(vehicle, keyframes)| VehicleMotion { vehicle, keyframes }).collect()
 }
 
-/// How far from the start of its way a vehicle may be when a traverse starts, in meters: followers find their places.
+/// Returns how far from the start of its way a vehicle may be when a traverse starts, in meters: followers find their
+/// places.
 pub(crate) fn sets_out_within_m(drive: &Drive, index: usize) -> f64 {
     SETS_OUT_WITHIN_M + index as f64 * drive.spacing_m
 }
 
-/// Where a vehicle is before its first drive: in its place of that drive's formation, unless it starts too far from there.
+/// Returns where a vehicle is before its first drive: in its place of that drive's formation, unless it starts too far
+/// from there.
 pub(crate) fn place_before(
     drive: &Drive,
     index: usize,
@@ -216,7 +218,7 @@ fn keyframes(track: &[Place], from: Option<Point2<f64>>, start: Time, end: Time)
     frames
 }
 
-/// Whether two places are so far apart that the way between them shows a heading.
+/// Returns whether two places are so far apart that the way between them shows a heading.
 fn is_apart(a: &Place, b: &Place) -> bool {
     distance(&a.position_m, &b.position_m) > 1e-3
 }

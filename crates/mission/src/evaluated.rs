@@ -74,7 +74,7 @@ impl Manner {
         Self { options, ..Self::default() }
     }
 
-    /// How an update asks for its plan.
+    /// Returns how an update asks for its plan.
     pub(crate) fn of(update: &Update) -> Self {
         let trace_events = update.trace.map(|_| TRACE_EVENTS);
         let options =
@@ -102,7 +102,7 @@ impl Compiled {
         self.network.as_ref().map(|network| &network.value)
     }
 
-    /// How it is planned as it is usual, once `network` is that of the text.
+    /// Returns how it is planned as it is usual, once `network` is that of the text.
     pub(crate) fn problem<'a>(
         &'a self,
         network: &'a Arc<Network>,
@@ -117,7 +117,7 @@ impl Compiled {
         }
     }
 
-    /// What is wrong with it, or could be, in textual order.
+    /// Returns what is wrong with it, or could be, in textual order.
     pub fn problems(&self) -> Vec<Problem> {
         Problem::all(&self.diagnostics, &self.source)
     }
@@ -137,7 +137,7 @@ impl Evaluated {
         }
     }
 
-    /// What is known of it, as panels and reviews read it; without keys, which tell what an edit changed.
+    /// Returns what is known of it, as panels and reviews read it; without keys, which tell what an edit changed.
     pub fn snapshot(&self) -> Snapshot {
         let Self { compiled, planned, ground, .. } = self;
         let warnings = Problem::all(&planned.warnings, &compiled.source);

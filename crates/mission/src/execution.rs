@@ -176,7 +176,8 @@ fn check_names(network: &Network, script: &Script) -> Result<(), String> {
     }
 }
 
-/// What is wrong with a disturbance that is about an occurrence of another kind, such as an activity that is to be withdrawn.
+/// Returns what is wrong with a disturbance that is about an occurrence of another kind, such as an activity that is to
+/// be withdrawn.
 fn wrong_kind(network: &Network, disturbance: &Disturbance) -> Option<String> {
     let name = disturbance.occurrence()?;
     let occurrence = network.occurrences.iter().find(|occurrence| occurrence.name == *name)?;
@@ -227,7 +228,7 @@ fn check_level(network: &Network, resource: &SmolStr, level: Rational) -> Result
     }
 }
 
-/// What a run of `planned` under `script` comes to.
+/// Returns what a run of `planned` under `script` comes to.
 pub fn executed(revision: u64, script: Script, program: &Program, planned: &Planned, ran: Ran) -> Execution {
     let mut plans = as_run(program, planned, &ran.outcome.plans, &ran.replanned);
     for executed in &mut plans {

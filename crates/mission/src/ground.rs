@@ -170,7 +170,7 @@ impl Grounds {
         space
     }
 
-    /// Where every vehicle can stand that flies, or that drives, whatever moves it there and away again.
+    /// Returns where every vehicle can stand that flies, or that drives, whatever moves it there and away again.
     pub(crate) fn standing(
         &mut self,
         (key, map): (&MapKey, &Arc<Terrain>),

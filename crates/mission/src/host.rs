@@ -10,13 +10,13 @@ pub trait CoreHost {
     /// Milliseconds since an arbitrary moment.
     fn now_millis(&self) -> f64;
 
-    /// Whether the request under way should be given up, because a newer one has come.
+    /// Returns whether the request under way should be given up, because a newer one has come.
     fn is_superseded(&mut self) -> bool;
 
     /// Takes an answer.
     fn answer(&mut self, response: Response);
 
-    /// Whether plans are wanted before the best one is known.
+    /// Returns whether plans are wanted before the best one is known.
     fn wants_first_plans(&self) -> bool {
         true
     }

@@ -73,7 +73,7 @@ pub(crate) fn best_plan(planned: &Planned) -> Option<(&Plan, f64)> {
     Some((planned.planning.outcome.plans.first()?, planned.counted_m))
 }
 
-/// How many pairs meet in the earliest schedule.
+/// Returns how many pairs meet in the earliest schedule.
 fn num_in_earliest(planned: &Planned) -> usize {
     planned.meetings.iter().filter(|meeting| meeting.violation.schedule.is_empty()).count()
 }
@@ -82,8 +82,8 @@ fn max_in_vain(planned: &Planned) -> usize {
     if num_in_earliest(planned) > 0 { MAX_IN_VAIN } else { MAX_IN_VAIN_FOR_OTHERS }
 }
 
-/// Whether fewer vehicles meet in another plan; those that meet in the earliest schedule count twice. For schedules that need
-/// not come about the objective gives up nothing.
+/// Returns whether fewer vehicles meet in another plan; those that meet in the earliest schedule count twice. For
+/// schedules that need not come about the objective gives up nothing.
 fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
     let (before, after) = (num_in_earliest(planned), num_in_earliest(other));
     let is_fewer = other.meetings.len() + after < planned.meetings.len() + before;
@@ -94,8 +94,8 @@ fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
     is_fewer && (after < before || !is_worse())
 }
 
-/// What the first goal of the objective in which two plans differ had with the first of them, if the second is worse in it.
-/// Both come with the meters that are counted for them.
+/// Returns what the first goal of the objective in which two plans differ had with the first of them, if the second is
+/// worse in it. Both come with the meters that are counted for them.
 fn lost(
     network: &Network,
     (first, first_m): (&Plan, f64),
@@ -161,7 +161,7 @@ struct WayAround {
 }
 
 impl WayAround {
-    /// What is tried once.
+    /// Returns what is tried once.
     const fn key(&self) -> (OccurrenceId, u32) {
         (self.occurrence, self.stays)
     }
@@ -175,7 +175,7 @@ impl WayAround {
     }
 }
 
-/// Who may go around whom.
+/// Returns who may go around whom.
 fn ways_around(meeting: &Meeting) -> Vec<WayAround> {
     let way = |index: usize| {
         let stays = meeting.vehicles[1 - index];

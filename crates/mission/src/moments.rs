@@ -8,7 +8,7 @@ use link::control_run::{ControlProgram, Input, Moment, PlantMoment};
 
 use crate::control::Control;
 
-/// What a control text comes to, for showing it.
+/// Returns what a control text comes to, for showing it.
 pub(crate) fn control_program(control: &Control) -> ControlProgram {
     match control {
         Control::Bound(system) => ControlProgram::Bound {

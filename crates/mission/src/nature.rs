@@ -24,8 +24,8 @@ const NATURE: u64 = 0x006e_6174_7572_6521;
 /// And how long ending activities early takes, by this.
 const ABORTS: u64 = 0x0061_626f_7274_7321;
 
-/// How long each duration of the environment's is in the run of `seed`, by occurrence. `named` are distributions that
-/// are given; all others are uniform.
+/// Returns how long each duration of the environment's is in the run of `seed`, by occurrence. `named` are
+/// distributions that are given; all others are uniform.
 pub(crate) fn choose(
     network: &Network,
     seed: u64,

@@ -31,12 +31,12 @@ impl NetworkText {
         Self { text: text.to_owned(), network, found }
     }
 
-    /// Whether it was read from this text.
+    /// Returns whether it was read from this text.
     pub(crate) fn is_of(&self, text: &str) -> bool {
         self.text == text
     }
 
-    /// Whether there is nothing wrong with it.
+    /// Returns whether there is nothing wrong with it.
     pub(crate) fn is_sound(&self) -> bool {
         self.found.iter().all(|found| found.severity != Severity::Error)
     }

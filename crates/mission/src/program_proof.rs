@@ -37,7 +37,7 @@ impl ProofUnderWay {
         Ok(Self { source: Arc::clone(source), question: question.clone(), proving })
     }
 
-    /// Whether this is the proof that answers `question`, after `from` states.
+    /// Returns whether this is the proof that answers `question`, after `from` states.
     pub(crate) fn is_of(&self, source: &Arc<str>, question: &ProofQuestion, from: usize) -> bool {
         self.source == *source && self.question == *question && self.proving.states() == from && from > 0
     }

@@ -111,7 +111,7 @@ impl Programs {
         (programs, found)
     }
 
-    /// Whether some program is handed what its activity is called with.
+    /// Returns whether some program is handed what its activity is called with.
     pub fn depend_on_calls(program: &Program) -> bool {
         program.primitives.iter().any(|primitive| {
             let mut handed = primitive.runs.iter().flat_map(|runs| &runs.arguments);
@@ -119,7 +119,7 @@ impl Programs {
         })
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.systems.is_empty()
     }
@@ -134,7 +134,7 @@ impl Programs {
         with(&occurrence.arguments).or_else(|| with(&[]))
     }
 
-    /// What they command, and the activities of `network` that run them.
+    /// Returns what they command, and the activities of `network` that run them.
     pub fn commanded(&self, network: &Network) -> Option<Commanded> {
         let plant = Arc::clone(&self.systems.values().next()?.model);
         let runs = |&(_, occurrence): &(usize, &Occurrence)| self.system(occurrence).is_some();
@@ -142,12 +142,12 @@ impl Programs {
         Some(Commanded { plant, by: by.map(|(index, _)| OccurrenceId::from_index(index)).collect() })
     }
 
-    /// How long a step takes, in mission units.
+    /// Returns how long a step takes, in mission units.
     pub const fn step(&self) -> Time {
         self.step
     }
 
-    /// What is wrong with the faults among `disturbances`, such as a component that the plant does not have.
+    /// Returns what is wrong with the faults among `disturbances`, such as a component that the plant does not have.
     pub fn unknown_faults(&self, network: &Network, disturbances: &[Disturbance]) -> Vec<String> {
         let mut unknown = Vec::new();
         for disturbance in disturbances {
@@ -276,7 +276,7 @@ fn arity(name: &Name, expected: usize, handed: usize) -> Diagnostic {
         .with_hint("pass it components of the plant, or parameters of the activity, as in `runs P(EngineA)`")
 }
 
-/// Whether a name is one of a plant's components, variables, modes or values.
+/// Returns whether a name is one of a plant's components, variables, modes or values.
 fn is_of_plant(model: &Model, name: &str) -> bool {
     model.component_named(name).is_some()
         || model.variable_named(name).is_some()

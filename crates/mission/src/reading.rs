@@ -157,12 +157,12 @@ impl Reading {
         self.program.clone().unwrap_or_else(|| Keyed { key: ContentKey::default(), value: Arc::default() })
     }
 
-    /// Whether the text is a network instead of a mission.
+    /// Returns whether the text is a network instead of a mission.
     pub(crate) fn is_network(&self) -> bool {
         self.network_text.is_some()
     }
 
-    /// What is wrong with the text, before it is compiled.
+    /// Returns what is wrong with the text, before it is compiled.
     pub(crate) fn diagnostics(&self) -> Vec<Diagnostic> {
         self.parse.diagnostics()
     }

@@ -19,7 +19,7 @@ pub(crate) fn ground(program: &Program, grounds: &mut Grounds) -> Option<Ground>
     grounds.resolve(program).0
 }
 
-/// Whether a condition asks what is in sight.
+/// Returns whether a condition asks what is in sight.
 fn asks(program: &Program) -> bool {
     let is_sight = |condition: &Condition| condition.sees.is_some();
     let mut is_asked = program
@@ -56,7 +56,7 @@ impl<'a> Seeing<'a> {
         Self { world, map }
     }
 
-    /// Why a location is hidden from a place of a vehicle, if it is. A place sees itself.
+    /// Returns why a location is hidden from a place of a vehicle, if it is. A place sees itself.
     fn hidden_from(
         &self,
         model: &motion::VehicleModel,
@@ -73,7 +73,7 @@ impl<'a> Seeing<'a> {
         Some(Hidden { place: place.name.text.clone(), blocked_at_m })
     }
 
-    /// What is between a vehicle at a place and a location; `None` if one of the two has no height.
+    /// Returns what is between a vehicle at a place and a location; `None` if one of the two has no height.
     fn line_of_sight(
         &self,
         model: &motion::VehicleModel,
@@ -84,7 +84,7 @@ impl<'a> Seeing<'a> {
         self.map.line_of_sight(from_m, target.position_m.into(), heights_m)
     }
 
-    /// Whether a vehicle sees a location from a place; `None` if a height or a name is not known.
+    /// Returns whether a vehicle sees a location from a place; `None` if a height or a name is not known.
     pub(crate) fn sees(&self, vehicle: &str, from_m: Point2<f64>, location: &str) -> Option<bool> {
         let (model, target) = self.found(vehicle, location)?;
         Some(self.line_of_sight(&model, from_m, target)?.blocked_at_m.is_none())

@@ -59,7 +59,7 @@ impl Spots {
         self.at(location, free, leader)
     }
 
-    /// Whether a vehicle makes those that come together go aside: what flies is above what drives.
+    /// Returns whether a vehicle makes those that come together go aside: what flies is above what drives.
     fn is_other(&self, vehicles: &[usize], other: usize) -> bool {
         vehicles.first().is_some_and(|&leader| self.flies[leader] == self.flies[other])
             && !vehicles.contains(&other)
@@ -151,7 +151,7 @@ impl<'mission> PossibleSpots<'mission> {
         Self { spots, starting, arrivals, contexts, stopped }
     }
 
-    /// Where the leader of a movement may stand at a location before it; nowhere if nothing brings it there.
+    /// Returns where the leader of a movement may stand at a location before it; nowhere if nothing brings it there.
     pub(crate) fn before(&self, occurrence: OccurrenceId, leader: usize, at: &Waypoint) -> Vec<Waypoint> {
         let start = self.spots.starts[leader].iter().filter(|start| start.name == at.name).cloned();
         let arrivals = self.arrivals.get(&at.name).into_iter().flatten().filter(|arrival| {
@@ -171,7 +171,8 @@ impl<'mission> PossibleSpots<'mission> {
         start.chain(slots.map(|slot| self.spots.at(at, slot, leader))).chain(stopped).collect()
     }
 
-    /// How far the leader of a movement may be from these places, in meters, because it followed another vehicle there.
+    /// Returns how far the leader of a movement may be from these places, in meters, because it followed another
+    /// vehicle there.
     pub(crate) fn behind_m(
         &self,
         occurrence: OccurrenceId,
@@ -190,14 +191,14 @@ impl<'mission> PossibleSpots<'mission> {
         behind_m.fold(0.0, f64::max)
     }
 
-    /// Where vehicles may stand after a movement that brings them to a location.
+    /// Returns where vehicles may stand after a movement that brings them to a location.
     pub(crate) fn after(&self, occurrence: OccurrenceId, vehicles: &[usize], at: &Waypoint) -> Vec<Waypoint> {
         let Some(&leader) = vehicles.first() else { return vec![at.clone()] };
         let highest = self.num_others(occurrence, vehicles, at);
         (0..=highest).map(|slot| self.spots.at(at, slot, leader)).collect()
     }
 
-    /// How many vehicles may stand at a location when others come there in a movement.
+    /// Returns how many vehicles may stand at a location when others come there in a movement.
     fn num_others(&self, occurrence: OccurrenceId, vehicles: &[usize], at: &Waypoint) -> usize {
         let starting = self.starting.get(&at.name).into_iter().flatten().copied();
         let arriving = self.arrivals.get(&at.name).into_iter().flatten();
@@ -209,7 +210,7 @@ impl<'mission> PossibleSpots<'mission> {
         others.len()
     }
 
-    /// Whether a plan may have both of two movements.
+    /// Returns whether a plan may have both of two movements.
     fn can_be_together(&self, one: OccurrenceId, other: OccurrenceId) -> bool {
         let (Some(one), Some(other)) = (self.contexts.get(&one), self.contexts.get(&other)) else {
             return true;

@@ -39,7 +39,7 @@ impl<'program> WorldIndex<'program> {
         self.vehicles.get(name).copied()
     }
 
-    /// What `occurrence` moves, if it is a traverse.
+    /// Returns what `occurrence` moves, if it is a traverse.
     pub(crate) fn moving(&self, occurrence: &Occurrence) -> Option<Moving<'program>> {
         Moving::of(self.primitives.get(occurrence.activity.as_str())?, occurrence)
     }

@@ -52,7 +52,7 @@ impl Member {
         if self.has_arrived { 0.0 } else { self.driver.length_m() - self.driver.progress_m() }
     }
 
-    /// Whether it goes around the others rather than wait for them.
+    /// Returns whether it goes around the others rather than wait for them.
     fn passes(&self) -> bool {
         self.driver.progress_m() < self.passes_until_m
     }
@@ -62,7 +62,7 @@ impl Member {
         self.passes_until_m = self.driver.progress_m() + meters;
     }
 
-    /// Whether it is this near to the end of its path.
+    /// Returns whether it is this near to the end of its path.
     fn is_within(&self, reach_m: f64) -> bool {
         let place = self.driver.state().position_m;
         self.driver.path().points_m.last().is_some_and(|&end| distance(&end, &place) <= reach_m)
@@ -169,12 +169,12 @@ impl Convoy {
         Some(&self.members.get(vehicle)?.driver)
     }
 
-    /// Whether all have arrived.
+    /// Returns whether all have arrived.
     pub fn has_arrived(&self) -> bool {
         self.members.iter().all(|member| member.has_arrived)
     }
 
-    /// Whether a vehicle is where it stays.
+    /// Returns whether a vehicle is where it stays.
     pub fn is_there(&self, vehicle: usize) -> bool {
         self.members.get(vehicle).is_some_and(|member| member.has_arrived)
     }
@@ -275,7 +275,7 @@ impl Convoy {
         if fastest_mps > 0.0 { step_s(fastest_mps) } else { self.step_s }
     }
 
-    /// Where a vehicle is and how it moves.
+    /// Returns where a vehicle is and how it moves.
     pub fn state(&self, vehicle: usize) -> MotionState {
         self.members.get(vehicle).map(|member| member.driver.state()).unwrap_or_default()
     }
@@ -352,7 +352,7 @@ impl Convoy {
         self.stall.count += 1;
     }
 
-    /// Whether a vehicle stands behind another that is in its way, rather than go around it.
+    /// Returns whether a vehicle stands behind another that is in its way, rather than go around it.
     fn waits_behind(&self, vehicle: usize, other: usize) -> bool {
         !self.members[vehicle].passes() && !self.members[other].has_arrived
     }
@@ -364,7 +364,7 @@ impl Convoy {
         all.filter(move |(other, member)| *other != vehicle && member.flies == flies)
     }
 
-    /// Whether a vehicle stands because another one goes around it close by, before it if both do.
+    /// Returns whether a vehicle stands because another one goes around it close by, before it if both do.
     fn lets_pass(&self, vehicle: usize) -> bool {
         let passes = self.members[vehicle].passes();
         self.close_to(vehicle)
@@ -408,7 +408,7 @@ impl Convoy {
         self.beside(vehicle).filter_map(is_in_its_way).collect()
     }
 
-    /// Whether others that move are close in front of a vehicle, or will soon be where it drives to.
+    /// Returns whether others that move are close in front of a vehicle, or will soon be where it drives to.
     fn is_held_by(&self, vehicle: usize, others: &[OtherVehicle]) -> bool {
         let Member { driver, flies, .. } = &self.members[vehicle];
         let radius_m = driver.settings().radius_m;
@@ -420,7 +420,7 @@ impl Convoy {
         })
     }
 
-    /// Whether the next step brings a vehicle nearer to a place, and nearer than a reach in meters.
+    /// Returns whether the next step brings a vehicle nearer to a place, and nearer than a reach in meters.
     fn drives_to(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
         let state = self.members[vehicle].driver.state();
         let step_m = self.stopping_m(vehicle).max(CROSSING_M);
@@ -429,14 +429,14 @@ impl Convoy {
         then_m < reach_m && then_m < distance(&state.position_m, &place)
     }
 
-    /// How far a vehicle drives before it stands, in meters.
+    /// Returns how far a vehicle drives before it stands, in meters.
     fn stopping_m(&self, vehicle: usize) -> f64 {
         let own = &self.members[vehicle].driver;
         let speed_mps = own.state().speed_mps;
         speed_mps * speed_mps / (2.0 * own.settings().limits.acceleration_mps2) + speed_mps * self.step_s
     }
 
-    /// Whether a place is in front of a vehicle, and nearer than it can stop and a reach in meters.
+    /// Returns whether a place is in front of a vehicle, and nearer than it can stop and a reach in meters.
     fn is_ahead(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
         let state = self.members[vehicle].driver.state();
         let stopping_m = self.stopping_m(vehicle);

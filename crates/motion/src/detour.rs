@@ -80,13 +80,13 @@ impl SeenPoints {
         seen.chain(self.echoes.points_m()).chain(self.vehicles.iter().copied())
     }
 
-    /// What sonars have heard that the range finder cannot see.
+    /// Returns what sonars have heard that the range finder cannot see.
     pub(crate) fn heard_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.echoes.points_m()
     }
 
-    /// Whether a disc can go straight from one place to another without coming nearer than `reach` to a seen point that
-    /// lies ahead.
+    /// Returns whether a disc can go straight from one place to another without coming nearer than `reach` to a seen
+    /// point that lies ahead.
     pub(crate) fn is_open(&self, from: Point2<f64>, to: Point2<f64>, reach: f64) -> bool {
         let way = Segment::new(from, to);
         let ahead = way.scaled_direction();

@@ -65,7 +65,7 @@ impl FineWorld {
         }
     }
 
-    /// Whether something lies below the plane of range finders.
+    /// Returns whether something lies below the plane of range finders.
     pub(crate) const fn has_low(&self) -> bool {
         !self.low.is_empty()
     }
@@ -77,7 +77,7 @@ impl FineWorld {
         discs.chain(faces).fold(f64::INFINITY, f64::min)
     }
 
-    /// What of it comes within a range of a point.
+    /// Returns what of it comes within a range of a point.
     pub fn around(&self, point_m: Point2<f64>, range_m: f64) -> Self {
         let reach = BoundingSphere::new(point_m, range_m);
         let is_near = |disc: &&Disc| reach.intersects(&BoundingSphere::new(disc.center_m, disc.shape.radius));
@@ -109,7 +109,7 @@ impl Disc {
         self.shape.distance_to_local_point(&offset, true)
     }
 
-    /// Where a ray meets it; 0 for a ray that begins inside.
+    /// Returns where a ray meets it; 0 for a ray that begins inside.
     fn cast(&self, ray: &Ray) -> Option<f64> {
         ray_toi_with_ball(&self.center_m, self.shape.radius, ray, true).1
     }

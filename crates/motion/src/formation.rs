@@ -23,7 +23,8 @@ const RING_SPACINGS: f64 = 0.25;
 const MAX_RINGS: u32 = 24;
 
 impl Formation {
-    /// Where the leader and `followers` vehicles behind it are when the leader has come `traveled_m` along its path.
+    /// Returns where the leader and `followers` vehicles behind it are when the leader has come `traveled_m` along its
+    /// path.
     ///
     /// Follower `k` (from 1) is `k` spacings behind along the path and half a spacing, or as much of it as is free, to
     /// the left when `k` is odd and to the right when it is even. One that would come nearer than the spacing to a
@@ -62,7 +63,7 @@ impl Formation {
         positions
     }
 
-    /// Where they are when the leader has come to the end of its path.
+    /// Returns where they are when the leader has come to the end of its path.
     pub fn end_m(self, space: &ConfigurationSpace, path: &Path, followers: u32) -> Vec<Point2<f64>> {
         self.positions_m(space, path, path.length_m(), followers)
     }

@@ -113,7 +113,7 @@ impl Kinodynamic {
     }
 }
 
-/// How far a state is from a place: the distance, and what it takes to face it. At least the distance.
+/// Returns how far a state is from a place: the distance, and what it takes to face it. At least the distance.
 fn measure(state: MotionState, place_m: Point2<f64>) -> f64 {
     let offset = place_m - state.position_m;
     let length = offset.norm();

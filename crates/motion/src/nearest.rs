@@ -33,7 +33,7 @@ impl PointTree {
         self.count as usize
     }
 
-    /// Whether there is no point.
+    /// Returns whether there is no point.
     pub const fn is_empty(&self) -> bool {
         self.count == 0
     }

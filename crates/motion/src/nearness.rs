@@ -96,7 +96,7 @@ fn nearest_places(a: [Point2<f64>; 2], b: [Point2<f64>; 2]) -> ([Point2<f64>; 2]
     with_distance.into_iter().min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or(with_distance[0])
 }
 
-/// Where two segments cross that are not parallel.
+/// Returns where two segments cross that are not parallel.
 fn crossing(a: [Point2<f64>; 2], b: [Point2<f64>; 2]) -> Option<Point2<f64>> {
     let cross = |one: Vector2<f64>, other: Vector2<f64>| one.x * other.y - one.y * other.x;
     let (along_a, along_b, offset) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);

@@ -67,7 +67,7 @@ fn ends_m(path: &Path, along_m: f64, leaving_m: f64) -> Option<[Point2<f64>; 2]>
     Some([before?.0, after?.0])
 }
 
-/// Whether a vehicle can drive past a rock close on one of its sides.
+/// Returns whether a vehicle can drive past a rock close on one of its sides.
 fn leads_past(
     space: &ConfigurationSpace,
     [from, to]: [Point2<f64>; 2],
@@ -81,7 +81,7 @@ fn leads_past(
         .any(|beside| space.is_segment_free(from, beside) && space.is_segment_free(beside, to))
 }
 
-/// Whether there is a way around a rock on the map around it.
+/// Returns whether there is a way around a rock on the map around it.
 fn leads_around(
     space: &ConfigurationSpace,
     ends_m: [Point2<f64>; 2],
@@ -101,8 +101,8 @@ mod tests {
 
     use super::*;
 
-    /// Whether one rock could close a straight path of 60 m through a gap of some meters between two walls, each so many meters
-    /// wide along the path and long across it.
+    /// Returns whether one rock could close a straight path of 60 m through a gap of some meters between two walls,
+    /// each so many meters wide along the path and long across it.
     fn is_closed_by_a_rock(gap_m: f64, wide_m: f64, long_m: f64) -> bool {
         let mut map = Occupancy::free(GridFrame::new(120, 120, 0.6));
         let [west, east] = [36.0 - 0.5 * wide_m, 36.0 + 0.5 * wide_m];

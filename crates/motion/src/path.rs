@@ -37,7 +37,7 @@ impl Path {
         Some(least)
     }
 
-    /// Whether the vehicle can drive all of it.
+    /// Returns whether the vehicle can drive all of it.
     pub fn is_free(&self, space: &ConfigurationSpace) -> bool {
         self.points_m.iter().all(|&point| space.is_free(point))
             && self.segments().all(|(a, b)| space.is_segment_free(a, b))

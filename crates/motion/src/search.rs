@@ -91,8 +91,8 @@ impl Search {
         event
     }
 
-    /// Whether further samples can't or shall not change anything: a path is found and the planner doesn't shorten
-    /// paths or has had its samples for that, or all samples are used up.
+    /// Returns whether further samples can't or shall not change anything: a path is found and the planner doesn't
+    /// shorten paths or has had its samples for that, or all samples are used up.
     pub fn is_finished(&self) -> bool {
         let Statistics { samples, samples_to_first_path, .. } = self.statistics;
         let satisfied = samples_to_first_path.is_some_and(|first| match &self.planner {

@@ -40,8 +40,9 @@ pub struct Approach {
     pub violation: Option<Separation>,
 }
 
-/// How near two vehicles come while both are under way, and when they first come closer than `safety_m`. Times must not
-/// decrease along a track. `None` when they are never under way at the same time. Linear in the number of points.
+/// Returns how near two vehicles come while both are under way, and when they first come closer than `safety_m`. Times
+/// must not decrease along a track. `None` when they are never under way at the same time. Linear in the number of
+/// points.
 pub fn closest_approach(a: &[TimedPoint], b: &[TimedPoint], safety_m: f64) -> Option<Approach> {
     let start = a.first()?.time_s.max(b.first()?.time_s);
     let end = a.last()?.time_s.min(b.last()?.time_s);

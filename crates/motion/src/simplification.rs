@@ -64,8 +64,8 @@ fn merge_turns(space: &ConfigurationSpace, points: &[Point2<f64>], extra_m: f64)
     kept
 }
 
-/// Where the line from `a` beyond `b` meets the line from `d` beyond `c`, if `b` and `c` turn the same way and the
-/// lines meet on that side.
+/// Returns where the line from `a` beyond `b` meets the line from `d` beyond `c`, if `b` and `c` turn the same way and
+/// the lines meet on that side.
 fn meeting_point(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>, d: Point2<f64>) -> Option<Point2<f64>> {
     let (along, middle, back) = (b - a, c - b, c - d);
     let (first, second) = (along.perp(&middle), middle.perp(&-back));

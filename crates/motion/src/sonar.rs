@@ -141,7 +141,7 @@ mod tests {
         Obstacle::Circle { center_m: Point2::new(x, y), radius_m }
     }
 
-    /// What is heard from the origin, looking east.
+    /// Returns what is heard from the origin, looking east.
     fn heard(world: &FineWorld) -> Vec<Point2<f64>> {
         let (array, mut echoes) = (SonarArray { noise_m: 0.0, ..SonarArray::POLAROID }, Echoes::default());
         let exact = RangeSensor { noise_m: 0.0, ..RangeSensor::SICK };

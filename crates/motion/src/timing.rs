@@ -54,9 +54,9 @@ pub fn time_path(
     path.segments().map(|(from, to)| time_segment(from, to, terrain, model, speeds)).collect()
 }
 
-/// What the segments of a path take where the vehicle holds its limits: it turns to face each on the spot and drives it from
-/// rest to rest, as [`drive_path`](crate::drive_path) does, so that turning, speeding up and slowing down count. `before` is
-/// how it faces at first, in radians; where that is not known, it may be the wrong way.
+/// Returns what the segments of a path take where the vehicle holds its limits: it turns to face each on the spot and
+/// drives it from rest to rest, as [`drive_path`](crate::drive_path) does, so that turning, speeding up and slowing
+/// down count. `before` is how it faces at first, in radians; where that is not known, it may be the wrong way.
 pub fn time_path_within(
     path: &Path,
     terrain: &Terrain,

@@ -53,7 +53,8 @@ pub struct GrownVertex {
 }
 
 impl GrowthStep {
-    /// Where the tree grew to from its nearest vertex, if nothing was in the way: one step toward the sample, in meters.
+    /// Returns where the tree grew to from its nearest vertex, if nothing was in the way: one step toward the sample,
+    /// in meters.
     pub fn steered_m(&self) -> Option<Point2<f64>> {
         self.added.iter().find(|grown| grown.tree == self.tree).map(|grown| grown.point_m)
     }
@@ -91,12 +92,12 @@ impl TracedSearch {
         Ok(Self { search, planner: settings.planner, parents, trace })
     }
 
-    /// What the samples did so far.
+    /// Returns what the samples did so far.
     pub const fn trace(&self) -> &GrowthTrace {
         &self.trace
     }
 
-    /// Whether the search is over.
+    /// Returns whether the search is over.
     pub fn is_finished(&self) -> bool {
         self.search.is_finished()
     }

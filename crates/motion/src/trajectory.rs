@@ -37,7 +37,7 @@ impl DriveLimits {
         }
     }
 
-    /// What two vehicles can do that keep together.
+    /// Returns what two vehicles can do that keep together.
     #[must_use]
     pub const fn of_both(self, other: Self) -> Self {
         Self {
@@ -49,12 +49,12 @@ impl DriveLimits {
         }
     }
 
-    /// How long turning on the spot takes, from rest to rest, in seconds.
+    /// Returns how long turning on the spot takes, from rest to rest, in seconds.
     pub fn turn_s(&self, angle_rad: f64) -> f64 {
         rest_to_rest_s(angle_rad.abs(), self.turn_rate_in_place_rps(), self.turn_acceleration_rps2)
     }
 
-    /// How long driving straight on takes, from rest to rest, at most at a speed, in seconds.
+    /// Returns how long driving straight on takes, from rest to rest, at most at a speed, in seconds.
     pub fn straight_s(&self, length_m: f64, speed_mps: f64) -> f64 {
         rest_to_rest_s(length_m, speed_mps.min(self.speed_mps), self.acceleration_mps2)
     }
@@ -88,7 +88,7 @@ impl MotionState {
         Self { position_m, heading_rad, speed_mps: 0.0, turn_rate_rps: 0.0 }
     }
 
-    /// Where the vehicle's own axes, ahead and to the left, lie in the world.
+    /// Returns where the vehicle's own axes, ahead and to the left, lie in the world.
     pub fn world_from_body(self) -> Isometry2<f64> {
         Isometry2::new(self.position_m.coords, self.heading_rad)
     }

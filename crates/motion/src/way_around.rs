@@ -173,8 +173,8 @@ impl<'a> Lattice<'a> {
         None
     }
 
-    /// Whether the straight way from the parent is free, which is looked at only now; otherwise the way from the best
-    /// block beside it is taken.
+    /// Returns whether the straight way from the parent is free, which is looked at only now; otherwise the way from
+    /// the best block beside it is taken.
     fn is_reached(&mut self, block: usize) -> bool {
         let place = self.places[block];
         if place.cost_m.is_infinite() {

@@ -77,8 +77,8 @@ impl eframe::App for PageApp {
     }
 }
 
-/// Whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` and `code` are what
-/// JavaScript calls it and its place on the keyboard. Keys that type are no one's business here.
+/// Returns whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` and
+/// `code` are what JavaScript calls it and its place on the keyboard. Keys that type are no one's business here.
 #[wasm_bindgen(js_name = usesKey)]
 pub fn uses_key(key: &str, code: &str, control: bool, alt: bool, shift: bool) -> bool {
     let is_function_key = key.len() > 1 && key.starts_with('F');
@@ -162,7 +162,7 @@ impl FrontEnd {
         self.runner.destroy();
     }
 
-    /// What draws: `webgpu` or `webgl2`; empty if that is not known.
+    /// Returns what draws: `webgpu` or `webgl2`; empty if that is not known.
     pub fn renderer(&self) -> String {
         let page = self.page.borrow();
         page.as_ref().map(|page| page.app.app_state().frame.renderer.clone()).unwrap_or_default()
@@ -227,7 +227,7 @@ impl FrontEnd {
         self.with(|page| page.app.keep_ahead(&page.egui, &events))
     }
 
-    /// What changed in the accessible document since the last call, as JSON, if anything did.
+    /// Returns what changed in the accessible document since the last call, as JSON, if anything did.
     #[wasm_bindgen(js_name = takeAccessibilityChange)]
     pub fn take_accessibility_change(&self) -> Result<Option<String>, JsValue> {
         let change = self.with(|page| page.egui.plugin_opt::<AccessibilityMirror>()?.lock().take_change())?;

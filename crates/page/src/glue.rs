@@ -17,7 +17,7 @@ extern "C" {
     #[wasm_bindgen(method, js_name = chooseFile)]
     pub(crate) fn choose_file(this: &Glue, extensions: Vec<String>, most: f64) -> Promise;
 
-    /// Whether missions can be saved to files that the user chose once. See `web/disk.js`.
+    /// Returns whether missions can be saved to files that the user chose once. See `web/disk.js`.
     #[wasm_bindgen(method, js_name = savesInPlace)]
     pub(crate) fn saves_in_place(this: &Glue) -> bool;
 
@@ -62,8 +62,8 @@ extern "C" {
     #[wasm_bindgen(method, js_name = saveFilm)]
     pub(crate) fn save_film(this: &Glue, name: &str) -> Promise;
 
-    /// What lies on the shelf: pairs of keys and bytes, or an error; undefined as long as that is not known. See
-    /// `web/shelf.js`.
+    /// Returns what lies on the shelf: pairs of keys and bytes, or an error; undefined as long as that is not known.
+    /// See `web/shelf.js`.
     #[wasm_bindgen(method, js_name = shelfContent)]
     pub(crate) fn shelf_content(this: &Glue) -> JsValue;
 
@@ -98,7 +98,7 @@ extern "C" {
     /// A planning core in a web worker.
     pub(crate) type CoreWorker;
 
-    /// How long it may continue after [`CoreWorker::supersede`], in milliseconds.
+    /// Returns how long it may continue after [`CoreWorker::supersede`], in milliseconds.
     #[wasm_bindgen(method, getter, js_name = patienceMillis)]
     pub(crate) fn patience_millis(this: &CoreWorker) -> f64;
 
@@ -120,7 +120,7 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub(crate) fn name(this: &ChosenFile) -> String;
 
-    /// What [`Glue::keep_file`] knows it by, if it does.
+    /// Returns what [`Glue::keep_file`] knows it by, if it does.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn token(this: &ChosenFile) -> Option<u32>;
 

@@ -313,7 +313,7 @@ impl Host for PageHost {
     }
 }
 
-/// What the shelf holds, as `web/shelf.js` tells it: pairs of keys and bytes, or what went wrong.
+/// Returns what the shelf holds, as `web/shelf.js` tells it: pairs of keys and bytes, or what went wrong.
 fn content_of(opened: &JsValue) -> Result<ShelfContent, StorageError> {
     let pairs = opened.dyn_ref::<js_sys::Array>().ok_or_else(|| refused(opened, 0))?;
     let pair = |pair: JsValue| {
@@ -323,7 +323,7 @@ fn content_of(opened: &JsValue) -> Result<ShelfContent, StorageError> {
     Ok(pairs.iter().filter_map(pair).collect())
 }
 
-/// Why the browser keeps nothing more.
+/// Returns why the browser keeps nothing more.
 fn refused(thrown: &JsValue, bytes: usize) -> StorageError {
     let name = js_sys::Reflect::get(thrown, &"name".into()).ok().and_then(|name| name.as_string());
     if name.as_deref() == Some("QuotaExceededError") {

@@ -61,7 +61,7 @@ pub(crate) fn options(avoids_webgpu: bool) -> WebOptions {
     options
 }
 
-/// What is asked of the graphics card: never more than it has, or it gives nothing.
+/// Returns what is asked of the graphics card: never more than it has, or it gives nothing.
 fn device(adapter: &Adapter) -> DeviceDescriptor<'static> {
     let usual = if adapter.get_info().backend == Backend::Gl {
         Limits::downlevel_webgl2_defaults()
@@ -76,7 +76,7 @@ fn device(adapter: &Adapter) -> DeviceDescriptor<'static> {
     }
 }
 
-/// What draws, for [`State`](workbench::host_io::Remote::state).
+/// Returns what draws, for [`State`](workbench::host_io::Remote::state).
 pub(crate) fn name(render_state: Option<&RenderState>) -> &'static str {
     match render_state.map(|state| state.adapter.get_info().backend) {
         Some(Backend::BrowserWebGpu) => "webgpu",

@@ -19,7 +19,7 @@ pub(crate) fn from_remote(error: RemoteError) -> JsValue {
     refusal(error.code(), &error.to_string())
 }
 
-/// What JavaScript threw, in words.
+/// Returns what JavaScript threw, in words.
 pub(crate) fn words(thrown: &JsValue) -> String {
     Reflect::get(thrown, &"message".into())
         .ok()

@@ -45,7 +45,7 @@ pub(crate) fn put_site_back(egui: &Egui) {
     }
 }
 
-/// What is carried.
+/// Returns what is carried.
 pub(crate) fn carried(egui: &Egui) -> Option<Carried> {
     DragAndDrop::payload::<Carried>(egui).map(|carried| (*carried).clone())
 }
@@ -173,8 +173,8 @@ fn offer(ui: &Ui, context: &Context<'_>, change: Change, commands: &mut CommandS
     }
 }
 
-/// What a change would do to the text, as [`workbench::state::AppState::drawing_preview`] says: asked once for as long as
-/// text and change stay the same.
+/// Returns what a change would do to the text, as [`workbench::state::AppState::drawing_preview`] says: asked once for
+/// as long as text and change stay the same.
 pub(crate) fn preview(egui: &Egui, context: &Context<'_>, change: &Change) -> Preview {
     #[derive(Clone)]
     struct Asked {

@@ -44,7 +44,8 @@ pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
     mark.on_hover_text(&text);
 }
 
-/// What is missing, where nothing is planned yet; `then` is what comes of it once it is there, as a main clause.
+/// Returns what is missing, where nothing is planned yet; `then` is what comes of it once it is there, as a main
+/// clause.
 pub(crate) fn missing(context: &Context<'_>, then: &str) -> String {
     match context.state.status() {
         _ if context.state.snapshots.lacks_a_scenario() => {

@@ -63,12 +63,12 @@ pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-/// Whether something has the keyboard other than a panel as a whole.
+/// Returns whether something has the keyboard other than a panel as a whole.
 pub(crate) fn has_focus(ui: &Ui) -> bool {
     ui.memory(|memory| memory.focused().is_some()) && !crate::is_region_focused(ui.ctx())
 }
 
-/// Whether plain keys belong to the panel: no one types, and no dialog is open.
+/// Returns whether plain keys belong to the panel: no one types, and no dialog is open.
 fn is_free(ui: &Ui, context: &Context<'_>) -> bool {
     context.state.window.dialog.is_none() && !ui.ctx().text_edit_focused() && {
         let is_editor = ui.memory(|memory| memory.focused() == Some(super::editor_id()));

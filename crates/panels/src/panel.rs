@@ -55,7 +55,7 @@ impl Context<'_> {
         self.state.search.shown()
     }
 
-    /// What the step that is looked at is about.
+    /// Returns what the step that is looked at is about.
     pub fn focus(&self) -> Option<Focus> {
         let view = self.step()?;
         Some(Focus::of(view.recording.network(), view.recording.trace(), &view.step))
@@ -67,7 +67,7 @@ impl Context<'_> {
         planning.outcome.failure.as_ref()?.reasons.get(self.state.reason)
     }
 
-    /// What `panel` is to do with its view, if anything; it is the panel's to do now.
+    /// Returns what `panel` is to do with its view, if anything; it is the panel's to do now.
     pub fn view_action(&self, panel: PanelKind) -> Option<ViewAction> {
         self.take_last(|effect| match effect {
             PanelEffect::View(of, action) if of == panel => Some(action),

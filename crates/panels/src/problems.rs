@@ -68,7 +68,7 @@ impl Panel for ProblemsPanel {
     }
 }
 
-/// How bad a problem is, for the editor and for whoever shows its sign.
+/// Returns how bad a problem is, for the editor and for whoever shows its sign.
 pub const fn severity(of: rmpl::Severity) -> Severity {
     match of {
         rmpl::Severity::Error => Severity::Error,
@@ -77,7 +77,7 @@ pub const fn severity(of: rmpl::Severity) -> Severity {
     }
 }
 
-/// Where what is selected is written. A whole scenario or activity would be about every problem in it.
+/// Returns where what is selected is written. A whole scenario or activity would be about every problem in it.
 fn selected_span(context: &Context<'_>) -> Option<Span> {
     let snapshot = context.snapshot.filter(|_| !context.is_stale)?;
     let span = context.state.selection.span(snapshot)?;

@@ -70,7 +70,7 @@ fn search(
     found
 }
 
-/// Whether the same values within `sets` satisfy both; false if the search stopped at its limit.
+/// Returns whether the same values within `sets` satisfy both; false if the search stopped at its limit.
 pub(crate) fn are_equal(model: &Model, left: &Formula, right: &Formula, sets: &mut [ValueSet]) -> bool {
     let mut implies = |from: &Formula, to: &Formula| {
         satisfying(&[from, &model.opposite(to.clone())], sets) == Found::Nothing

@@ -432,7 +432,7 @@ impl Exploration {
         Ok(())
     }
 
-    /// Where a step leads by the answers to what it depends on; `None` where no values give these answers.
+    /// Returns where a step leads by the answers to what it depends on; `None` where no values give these answers.
     fn tree(
         &mut self,
         at: usize,

@@ -52,7 +52,7 @@ impl Belief {
         Self { entries: vec![(state, BigUint::one())], total: BigUint::one(), dropped: BigUint::zero() }
     }
 
-    /// Whether it is certain of this state.
+    /// Returns whether it is certain of this state.
     pub(crate) fn is_certain_of(&self, state: &State) -> bool {
         self.dropped.is_zero() && matches!(self.entries.as_slice(), [(only, _)] if only == state)
     }
@@ -120,7 +120,7 @@ impl Belief {
         Self::from_weights(weights.collect())
     }
 
-    /// How many states are believed possible.
+    /// Returns how many states are believed possible.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
@@ -145,7 +145,7 @@ impl Belief {
         self.interval(&self.entries[0].1)
     }
 
-    /// Whether nothing was dropped, so that all probabilities are exact.
+    /// Returns whether nothing was dropped, so that all probabilities are exact.
     pub fn is_exact(&self) -> bool {
         self.dropped.is_zero()
     }
@@ -176,8 +176,8 @@ impl Belief {
         &self.entries[rank].1
     }
 
-    /// Whether so little was dropped that more states are not needed: less than a thousandth of the measure, and less than
-    /// the most likely state leads the second by.
+    /// Returns whether so little was dropped that more states are not needed: less than a thousandth of the measure,
+    /// and less than the most likely state leads the second by.
     pub(crate) fn is_settled(&self) -> bool {
         if self.dropped.is_zero() {
             return true;
@@ -217,7 +217,7 @@ impl Belief {
         &self.total
     }
 
-    /// What part of the measure was kept, at least.
+    /// Returns what part of the measure was kept, at least.
     pub(crate) fn kept(&self) -> Probability {
         if self.is_exact() { Probability::one() } else { self.fraction(&self.total) }
     }

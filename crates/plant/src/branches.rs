@@ -102,7 +102,7 @@ fn part(targets: &[Target], target: &Target) -> Probability {
     Probability::new(target.weight.into(), all.into())
 }
 
-/// How likely a state is to come next, as far as its components are independent.
+/// Returns how likely a state is to come next, as far as its components are independent.
 fn chance(each: &[Vec<Target>], state: &State) -> f64 {
     let of = |(targets, mode): (&Vec<Target>, &u8)| {
         let all: u64 = targets.iter().map(|target| target.weight).sum();
@@ -177,7 +177,7 @@ fn exact(each: &[Vec<Target>], state: &State) -> Probability {
     })
 }
 
-/// Whether the modes of a state can hold together with an observation.
+/// Returns whether the modes of a state can hold together with an observation.
 fn is_possible(model: &Model, state: &State, observation: &Observation) -> bool {
     let mut free = Domains::observed(model, observation);
     model.islands.iter().all(|island| Assumed::all(model, island, &state.0).check(&mut free).is_ok())

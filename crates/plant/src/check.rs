@@ -152,7 +152,7 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// What `name` means in a constraint of `class`.
+    /// Returns what `name` means in a constraint of `class`.
     fn meaning(&self, class: &MergedClass<'_>, name: &str) -> Option<Meaning> {
         let of = |variables: &[MergedVariable], name: &str, is_command| {
             let found = variables.iter().find(|known| known.name.text == name)?;

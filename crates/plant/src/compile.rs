@@ -369,7 +369,7 @@ impl Compiler<'_, '_> {
         (known.into_iter().map(|(fault, _)| fault).collect(), common)
     }
 
-    /// Where the transitions that leave a mode lead: those with equal guards are outcomes of one choice.
+    /// Returns where the transitions that leave a mode lead: those with equal guards are outcomes of one choice.
     fn choices(
         &mut self,
         id: ComponentId,
@@ -398,7 +398,7 @@ impl Compiler<'_, '_> {
         grouped.into_iter().filter_map(choice).collect()
     }
 
-    /// What enables a transition: its guard, and none of the guards that take precedence.
+    /// Returns what enables a transition: its guard, and none of the guards that take precedence.
     fn guard(&self, id: ComponentId, transition: &MergedTransition<'_>) -> Formula {
         let guard = self.formula(id, transition.guard, true);
         if transition.unless.is_empty() {
@@ -408,7 +408,8 @@ impl Compiler<'_, '_> {
         Formula::All(std::iter::once(guard).chain(unless).collect())
     }
 
-    /// Where one guard leads. One outcome without a probability has the rest; without such an outcome the mode stays.
+    /// Returns where one guard leads. One outcome without a probability has the rest; without such an outcome the mode
+    /// stays.
     fn choice(
         &mut self,
         class: &MergedClass<'_>,
@@ -501,7 +502,7 @@ impl Compiler<'_, '_> {
         Some(Formula::Any(each.collect()).given(&|_| None))
     }
 
-    /// What a name represents in the constraints of a component.
+    /// Returns what a name represents in the constraints of a component.
     fn named(&self, id: ComponentId, name: &str) -> Option<Named<'_>> {
         self.field(id, name).or_else(|| {
             if let Some(other) = self.reached(id, name) {
@@ -538,7 +539,7 @@ impl Compiler<'_, '_> {
     }
 }
 
-/// Whether all that a component may do can be weighed over one denominator.
+/// Returns whether all that a component may do can be weighed over one denominator.
 fn has_common_denominator(modes: &[Mode]) -> bool {
     let each = modes.iter().flat_map(|mode| {
         let choices = mode.choices.iter().map(|choice| choice.denominator);

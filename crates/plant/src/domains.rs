@@ -32,7 +32,7 @@ pub(crate) enum Standing {
 }
 
 impl Standing {
-    /// Where a place stands that was not looked at yet.
+    /// Returns where a place stands that was not looked at yet.
     pub(crate) const fn of(mode: Option<u8>) -> Self {
         if mode.is_some() { Self::Waiting } else { Self::Done }
     }
@@ -73,7 +73,7 @@ impl Domains {
         domains
     }
 
-    /// Where domains that were `settled` stand, to continue from there.
+    /// Returns where domains that were `settled` stand, to continue from there.
     pub(crate) fn resume(&mut self, settled: &Settled) -> Point {
         self.standing.clone_from(&settled.standing);
         self.point()

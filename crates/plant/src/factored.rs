@@ -71,7 +71,7 @@ impl FactoredBelief {
         &self.most_likely
     }
 
-    /// How many states are believed possible; the largest number where there are more.
+    /// Returns how many states are believed possible; the largest number where there are more.
     pub fn len(&self) -> usize {
         self.parts.iter().fold(1, |all, part| all.saturating_mul(part.belief.len()))
     }
@@ -81,12 +81,12 @@ impl FactoredBelief {
         self.parts.iter().any(|part| part.belief.is_empty())
     }
 
-    /// Whether nothing was dropped, so that all probabilities are exact.
+    /// Returns whether nothing was dropped, so that all probabilities are exact.
     pub fn is_exact(&self) -> bool {
         self.parts.iter().all(|part| part.belief.is_exact())
     }
 
-    /// Which share of what explains all observations was dropped at most.
+    /// Returns which share of what explains all observations was dropped at most.
     pub fn dropped(&self) -> Probability {
         let kept = self.parts.iter().filter(|part| !part.belief.is_exact()).map(|part| part.belief.kept());
         Probability::one() - kept.fold(Probability::one(), |all, kept| all * kept)

@@ -61,7 +61,7 @@ impl Formula {
         }
     }
 
-    /// What is left to hold when some symbols have these values, without parts that are decided or repeated.
+    /// Returns what is left to hold when some symbols have these values, without parts that are decided or repeated.
     pub(crate) fn given(&self, value_of: &impl Fn(u32) -> Option<u8>) -> Self {
         let joined = |parts: &[Self], is_all: bool| {
             let mut left: Vec<Self> = Vec::with_capacity(parts.len());

@@ -40,7 +40,7 @@ pub(crate) fn check_guards(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Whether some modes of the other components, and some commands, make a guard true in a mode of its component.
+/// Returns whether some modes of the other components, and some commands, make a guard true in a mode of its component.
 fn can_hold(model: &Model, component: ComponentId, from: u8, guard: &Formula) -> bool {
     let Some(alternatives) = guard.alternatives(MAX_ALTERNATIVES) else { return true };
     let mut involved: BTreeSet<ComponentId> = BTreeSet::new();
@@ -94,7 +94,7 @@ fn commands_of(model: &Model, alternative: &[(u32, ValueSet)]) -> Commands {
     commands
 }
 
-/// Whether the modes of a state can hold together in some islands.
+/// Returns whether the modes of a state can hold together in some islands.
 fn is_possible(model: &Model, islands: &[&Island], state: &State) -> bool {
     let mut free = Domains::observed(model, &Observation::default());
     islands.iter().all(|island| Assumed::all(model, island, &state.0).check(&mut free).is_ok())

@@ -97,7 +97,7 @@ impl HittingTree {
             .map(|(at, node)| (at, node.without.as_slice()))
     }
 
-    /// Whether no node is open: the diagnoses are then all there are.
+    /// Returns whether no node is open: the diagnoses are then all there are.
     pub fn is_finished(&self) -> bool {
         self.nodes.iter().all(|node| node.label != HittingLabel::Open)
     }
@@ -139,8 +139,8 @@ impl HittingTree {
         }
     }
 
-    /// What a tree that is built level by level does next, and with which node; nothing if it is finished. A diagnosis may
-    /// be refused: the conflict that contradicts it is then listed.
+    /// Returns what a tree that is built level by level does next, and with which node; nothing if it is finished. A
+    /// diagnosis may be refused: the conflict that contradicts it is then listed.
     pub fn next_move(&self) -> Option<(usize, HittingMove)> {
         let open = |(_, node): &(usize, &HittingNode)| node.label == HittingLabel::Open;
         let (at, node) =
@@ -198,7 +198,7 @@ impl HittingTree {
     }
 }
 
-/// Whether all components of `part` are among those of `whole`.
+/// Returns whether all components of `part` are among those of `whole`.
 fn is_part(part: &[ComponentId], whole: &[ComponentId]) -> bool {
     part.iter().all(|component| whole.contains(component))
 }

@@ -33,7 +33,7 @@ impl Interval {
         (self.low == self.high).then_some(&self.low)
     }
 
-    /// Whether a probability lies between the limits.
+    /// Returns whether a probability lies between the limits.
     pub fn contains(&self, probability: &Probability) -> bool {
         (&self.low..=&self.high).contains(&probability)
     }

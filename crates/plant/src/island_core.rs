@@ -31,7 +31,7 @@ pub(crate) fn core(model: &Model, island: &Island) -> Vec<u32> {
     }
 }
 
-/// Whether the component at a place among those `left` can complete whatever the others agree on.
+/// Returns whether the component at a place among those `left` can complete whatever the others agree on.
 fn completes(model: &Model, island: &Island, left: &[u32], at: usize, domains: &mut [ValueSet]) -> bool {
     let place = left[at] as usize;
     let own = Model::mode_symbol(island.components[place]);
@@ -62,7 +62,7 @@ fn completes(model: &Model, island: &Island, left: &[u32], at: usize, domains: &
     })
 }
 
-/// Whether for all values of `shared` some values of `private` satisfy a constraint.
+/// Returns whether for all values of `shared` some values of `private` satisfy a constraint.
 fn for_all(constraint: &Formula, shared: &[u32], private: &[u32], domains: &mut [ValueSet]) -> bool {
     match constraint.truth(domains) {
         Truth::True => return true,

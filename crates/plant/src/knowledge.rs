@@ -62,7 +62,7 @@ impl<'model> Situation<'model> {
         Self { model, state, domains, is_propagated: false }
     }
 
-    /// Whether the modes and the observation entail a condition.
+    /// Returns whether the modes and the observation entail a condition.
     pub fn entails(&mut self, condition: &Formula) -> bool {
         if condition.truth(&self.domains.sets) == Truth::Open {
             self.propagate();
@@ -115,7 +115,7 @@ impl<'model> Situation<'model> {
     }
 }
 
-/// Whether there is no way to hold the modes of a state, within some domains, without a condition.
+/// Returns whether there is no way to hold the modes of a state, within some domains, without a condition.
 pub(crate) fn is_entailed_by_search(
     model: &Model,
     condition: &Formula,
@@ -128,7 +128,8 @@ pub(crate) fn is_entailed_by_search(
     !alternatives.iter().any(|alternative| is_possible(model, state, start, alternative))
 }
 
-/// Whether the modes of a state can hold together, within some domains, where symbols have values of these sets.
+/// Returns whether the modes of a state can hold together, within some domains, where symbols have values of these
+/// sets.
 fn is_possible(model: &Model, state: &State, start: &Domains, given: &[(u32, ValueSet)]) -> bool {
     let mut domains = start.clone();
     for (symbol, set) in given {
@@ -156,7 +157,7 @@ impl Known<'_> {
         self.symbols_by_group(condition).into_keys().collect()
     }
 
-    /// How probable a condition is: it holds in the states whose modes entail it with the observation.
+    /// Returns how probable a condition is: it holds in the states whose modes entail it with the observation.
     ///
     /// Groups that the condition does not speak of make no difference. Linear in the states of the groups it speaks of,
     /// and in what of the condition these states leave open.
@@ -256,7 +257,7 @@ impl Known<'_> {
 /// A state in which a condition does not hold is searched among at most so many of the most likely ones.
 const MAX_SEARCHED: usize = 100_000;
 
-/// What is left of a condition that has to hold with each of some combinations of values.
+/// Returns what is left of a condition that has to hold with each of some combinations of values.
 fn rest_of(condition: &Formula, symbols: &[(u32, u32)], combinations: &[Vec<u8>]) -> Formula {
     let given = |values: &Vec<u8>| {
         condition.given(&|symbol| {

@@ -216,7 +216,7 @@ impl Model {
         (self.components.len() + self.variables.len()) as u32 + command.0
     }
 
-    /// Whether only commands decide where a component goes from a mode.
+    /// Returns whether only commands decide where a component goes from a mode.
     pub(crate) fn is_led_by_commands(&self, component: ComponentId, mode: u8) -> bool {
         self.led_by_commands.get(component.0 as usize).is_some_and(|modes| modes.contains(mode))
     }

@@ -102,12 +102,12 @@ impl Odds {
         }
     }
 
-    /// How many prior states there are.
+    /// Returns how many prior states there are.
     pub(crate) const fn rows(&self) -> usize {
         self.prior.len()
     }
 
-    /// Whether a component may enter several modes.
+    /// Returns whether a component may enter several modes.
     pub(crate) fn is_free(&self, component: ComponentId) -> bool {
         self.free.binary_search(&(component.0 as usize)).is_ok()
     }

@@ -127,7 +127,7 @@ impl Planner {
         (owner, ensuring(&self.model, owner, self.model.variable_symbol(variable), set))
     }
 
-    /// Whether a goal is in reach as far as its component and what it depends on tell.
+    /// Returns whether a goal is in reach as far as its component and what it depends on tell.
     pub fn may_reach(&self, state: &State, goal: &crate::Goal) -> bool {
         self.reach(state)
             .get(goal.component.0 as usize)
@@ -185,7 +185,7 @@ impl Planner {
         modes.get(from as usize)?.get(first as usize)
     }
 
-    /// Whether the precompiled path can be taken as things are.
+    /// Returns whether the precompiled path can be taken as things are.
     fn follows_policy(&self, component: ComponentId, mut from: u8, to: u8, reach: &[ValueSet]) -> bool {
         for _ in 0..ValueSet::MOST {
             if from == to {

@@ -16,20 +16,20 @@ use crate::simulate::Random;
 const MAX_DRAWS: u32 = 1000;
 
 impl Component {
-    /// Whether it may start in several modes.
+    /// Returns whether it may start in several modes.
     pub fn has_prior(&self) -> bool {
         self.prior.len() > 1
     }
 
-    /// What its weights sum to.
+    /// Returns what its weights sum to.
     fn prior_total(&self) -> u64 {
         self.prior.iter().map(|(_, weight)| weight).sum()
     }
 }
 
 impl Belief {
-    /// What is believed of a plant before the first step, with at most `most` states: components start independently, in
-    /// modes that can hold together. `None` if no such modes can.
+    /// Returns what is believed of a plant before the first step, with at most `most` states: components start
+    /// independently, in modes that can hold together. `None` if no such modes can.
     ///
     /// A plant whose components each start in one mode is certain to be there.
     pub fn initial(model: &Model, most: usize) -> Option<Self> {
@@ -54,7 +54,7 @@ impl Belief {
 }
 
 impl FactoredBelief {
-    /// What is believed of a plant before the first step, with at most `most` states for each group.
+    /// Returns what is believed of a plant before the first step, with at most `most` states for each group.
     ///
     /// Groups whose first modes contradict each other, which compilation reports, are taken to start in them.
     pub fn initial(groups: &[Group], most: usize) -> Self {

@@ -328,7 +328,7 @@ impl Planner {
         self.why(state, goal, &reach)
     }
 
-    /// Why no mode of a goal is in reach: no transition leads there, or one needs what is out of reach itself.
+    /// Returns why no mode of a goal is in reach: no transition leads there, or one needs what is out of reach itself.
     fn why(&self, state: &State, goal: Goal, reach: &[ValueSet]) -> String {
         let name = self.model.component(goal.component).map_or("?", |data| data.name.as_str());
         let mode = |mode: u8| self.model.mode_name(goal.component, mode);

@@ -191,7 +191,8 @@ impl SimulatedPlant {
         Ok(())
     }
 
-    /// What the plant shows without chance: where the modes leave a variable open, its `SHOWS` value if that is possible.
+    /// Returns what the plant shows without chance: where the modes leave a variable open, its `SHOWS` value if that is
+    /// possible.
     pub fn observation(&self) -> Observation {
         observation_of(&self.model, &self.state)
     }
@@ -215,7 +216,7 @@ impl SimulatedPlant {
     }
 }
 
-/// Whether some values satisfy what is open; all consequences were drawn.
+/// Returns whether some values satisfy what is open; all consequences were drawn.
 fn is_completable(assumed: &Assumed<'_>, domains: &mut Domains) -> bool {
     let point = domains.point();
     let result = assumed.search(domains);
@@ -321,7 +322,7 @@ fn true_values(model: &Model, island: &Island, state: &State, random: &mut Rando
     values_drawn
 }
 
-/// What a plant in `state` shows.
+/// Returns what a plant in `state` shows.
 pub fn observation_of(model: &Model, state: &State) -> Observation {
     let mut domains = Domains::observed(model, &Observation::default());
     let mut observation = Observation::default();

@@ -83,7 +83,7 @@ fn mode_of<'model>(model: &'model Model, component: ComponentId, state: &State) 
 }
 
 impl Choice {
-    /// Whether another choice of the same mode leads elsewhere, or with other probabilities.
+    /// Returns whether another choice of the same mode leads elsewhere, or with other probabilities.
     pub(crate) fn differs(&self, other: &Self) -> bool {
         let is_same = |left: &(u8, u64)| {
             other.outcomes.iter().any(|right| {
@@ -198,13 +198,13 @@ impl Choices {
         range.map_or(&[], |(start, end)| &self.weights[*start as usize..*end as usize])
     }
 
-    /// Whether a component may do from a state just what it may do from the one before.
+    /// Returns whether a component may do from a state just what it may do from the one before.
     pub(crate) fn is_repeated(&self, state: usize, component: usize) -> bool {
         let at = state * self.components + component;
         at.checked_sub(self.components).is_some_and(|before| self.ranges[at] == self.ranges[before])
     }
 
-    /// How many components there are.
+    /// Returns how many components there are.
     pub(crate) const fn components(&self) -> usize {
         self.components
     }
@@ -267,7 +267,7 @@ pub(crate) fn led_by_commands(model: &Model) -> Vec<ValueSet> {
     model.components.iter().map(modes_of).collect()
 }
 
-/// Whether a guard is true whatever the state and the commands leave open.
+/// Returns whether a guard is true whatever the state and the commands leave open.
 pub(crate) fn is_entailed(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> bool {
     match direct(model, guard, state, commands) {
         Truth::True => true,

@@ -87,12 +87,12 @@ impl Table {
         Some(())
     }
 
-    /// Whether there is only one clause; all have to hold.
+    /// Returns whether there is only one clause; all have to hold.
     pub(crate) const fn is_single(&self) -> bool {
         self.clauses == 1
     }
 
-    /// What `domains` make of the clause whose members start at `start`, and where the next one starts.
+    /// Returns what `domains` make of the clause whose members start at `start`, and where the next one starts.
     #[inline]
     pub(crate) fn clause(&self, start: usize, domains: &[ValueSet]) -> Option<(Clause<'_>, usize)> {
         let members = self.members.get(start..)?;

@@ -42,19 +42,19 @@ impl ValueSet {
         set
     }
 
-    /// Whether a value is in the set.
+    /// Returns whether a value is in the set.
     #[inline]
     pub const fn contains(&self, value: u8) -> bool {
         self.words[value as usize / 64] >> (value % 64) & 1 == 1
     }
 
-    /// Whether no value is in the set.
+    /// Returns whether no value is in the set.
     #[inline]
     pub const fn is_empty(&self) -> bool {
         self.words[0] | self.words[1] | self.words[2] | self.words[3] == 0
     }
 
-    /// How many values are in the set.
+    /// Returns how many values are in the set.
     #[inline]
     pub fn len(&self) -> u32 {
         self.words.iter().map(|word| word.count_ones()).sum()

@@ -10,7 +10,7 @@ pub fn utc_text(unix_millis: i64) -> String {
     time.map(|time| time.strftime("%Y-%m-%dT%H:%M:%SZ").to_string()).unwrap_or_default()
 }
 
-/// Whether the seconds of a date with time are 60.
+/// Returns whether the seconds of a date with time are 60.
 fn is_leap_second(date: &str) -> bool {
     let clock = date.split_once(['T', 't', ' ']).map_or("", |(_, clock)| clock);
     let seconds = clock.split(':').nth(2).or_else(|| clock.get(4..)).unwrap_or_default();

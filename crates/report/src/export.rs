@@ -28,7 +28,7 @@ pub struct About<'a> {
 }
 
 impl About<'_> {
-    /// How the schedule stands, for programs: pinned events make it another one than the board has looked at.
+    /// Returns how the schedule stands, for programs: pinned events make it another one than the board has looked at.
     fn status(&self) -> Value {
         if self.pins.is_empty() { json!(self.status) } else { json!("pinned") }
     }
@@ -49,7 +49,7 @@ impl About<'_> {
         self.pins.iter().any(|(pinned, _)| *pinned == node)
     }
 
-    /// Which of its ends are pinned: `start`, `end`, `start end` or nothing.
+    /// Returns which of its ends are pinned: `start`, `end`, `start end` or nothing.
     fn pinned(&self, occurrence: &Occurrence) -> String {
         let ends = [("start", occurrence.start), ("end", occurrence.end)];
         let pinned = ends.into_iter().filter(|(_, node)| self.is_pinned(*node));
@@ -63,7 +63,7 @@ impl About<'_> {
     }
 }
 
-/// What a mission counts time in: `min` or `s`.
+/// Returns what a mission counts time in: `min` or `s`.
 fn unit(snapshot: &Snapshot) -> &'static str {
     match snapshot.program.options.time_unit {
         TimeUnit::Minute => "min",
@@ -263,7 +263,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
     Some(out)
 }
 
-/// What downstream tools list: activities and assertions, not delays.
+/// Returns what downstream tools list: activities and assertions, not delays.
 fn rows<'a>(snapshot: &'a Snapshot, about: &About<'_>) -> Option<(&'a Network, Vec<Scheduled>)> {
     let network = snapshot.network.as_deref()?;
     let planned = snapshot.plan()?;

@@ -362,7 +362,7 @@ fn judged() -> Record {
     record
 }
 
-/// What is approved of a mission.
+/// Returns what is approved of a mission.
 fn subject(planned: &Planned) -> Subject {
     let (network, plan) =
         (planned.snapshot.network.as_deref().expect("a network"), planned.snapshot.plan().expect("a plan"));

@@ -167,8 +167,8 @@ impl<'input> Examiner<'input> {
         }
     }
 
-    /// Why no plan makes a choice together with the earlier ones of the plan. Where that depends on later choices, each
-    /// way to make these has its reason.
+    /// Returns why no plan makes a choice together with the earlier ones of the plan. Where that depends on later
+    /// choices, each way to make these has its reason.
     fn impossible(&self, other: Choice, enough: &mut dyn FnMut(&Stats) -> bool) -> Fate {
         let choices: Vec<Choice> = self.earlier(other).chain([other]).collect();
         let open = without_paths(self.network);
@@ -200,13 +200,13 @@ impl<'input> Examiner<'input> {
         Fate::Impossible { reason: told.join("; "), spans }
     }
 
-    /// What the plan chose before another choice, in textual order.
+    /// Returns what the plan chose before another choice, in textual order.
     fn earlier(&self, other: Choice) -> impl Iterator<Item = Choice> {
         self.plan.choices.iter().copied().filter(move |choice| choice.decision < other.decision)
     }
 }
 
-/// What a plan comes to that is the best, as far as no path has to be known for it.
+/// Returns what a plan comes to that is the best, as far as no path has to be known for it.
 fn at_best(network: &Network, plan: &Plan) -> Option<String> {
     let needs_paths = worth::measures(network).contains(&Measure::Length);
     worth::words(network, plan).filter(|_| plan.quality.is_optimal == Some(true) && !needs_paths)

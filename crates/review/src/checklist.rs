@@ -334,7 +334,7 @@ impl Review {
         }
     }
 
-    /// Whether there is a plan to say anything about.
+    /// Returns whether there is a plan to say anything about.
     pub fn is_planned(&self) -> bool {
         !self.events.is_empty()
     }
@@ -360,7 +360,7 @@ impl Review {
         worst.unwrap_or(if is_passed { Status::Passed } else { Status::Information })
     }
 
-    /// What a section without lines says, as the line that has passed.
+    /// Returns what a section without lines says, as the line that has passed.
     pub fn settled(&self, section: Section) -> Option<Line> {
         let is_settled = self.is_planned()
             && self.lines(section).is_empty()
@@ -368,7 +368,7 @@ impl Review {
         is_settled.then(|| Line::new(Status::Passed, self.nothing(section).trim_end_matches('.').to_owned()))
     }
 
-    /// What a section without lines says: that there is nothing to find fault with, or no plan to look at.
+    /// Returns what a section without lines says: that there is nothing to find fault with, or no plan to look at.
     pub fn nothing(&self, section: Section) -> &'static str {
         match section {
             Section::Warnings => "The text has no errors and no warnings.",
@@ -388,12 +388,12 @@ impl Review {
         }
     }
 
-    /// How many lines have each status: passed, attention, failed. What is information is counted apart.
+    /// Returns how many lines have each status: passed, attention, failed. What is information is counted apart.
     pub fn counts(&self) -> [usize; 3] {
         [Status::Passed, Status::Attention, Status::Failed].map(|status| self.count(status))
     }
 
-    /// How many lines have this status.
+    /// Returns how many lines have this status.
     pub fn count(&self, status: Status) -> usize {
         let lines = Section::ALL.iter().flat_map(|&section| self.lines(section));
         lines.filter(|line| line.status == status).count()

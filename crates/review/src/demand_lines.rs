@@ -55,8 +55,8 @@ pub(super) fn required_sight(network: &Network, ask: LabelId) -> Option<(&str, &
     Some((vehicle, &sight.location, !ask.text.starts_with("not(")))
 }
 
-/// What a vehicle sees where it has to, or does not see where it must not, and from where (SPEC 10.5); `None` for a condition
-/// about something else.
+/// Returns what a vehicle sees where it has to, or does not see where it must not, and from where (SPEC 10.5); `None`
+/// for a condition about something else.
 pub(super) fn sight_text(network: &Network, link: CausalLink) -> Option<String> {
     let (vehicle, location, is_seen) = required_sight(network, link.ask)?;
     let place = network.value_names(&network.labels[link.tell.index()].literal).join(", ");
@@ -79,7 +79,7 @@ pub(super) fn status_by_checker(planning: &Planning) -> Status {
 }
 
 impl DemandLines<'_> {
-    /// What requirements rest on, the values of each state in their order, and the movements of each vehicle.
+    /// Returns what requirements rest on, the values of each state in their order, and the movements of each vehicle.
     pub(super) fn states(&self) -> Vec<Line> {
         let mut lines: Vec<Line> = self.requirements().into_iter().collect();
         lines.extend(self.sights());
@@ -133,7 +133,7 @@ impl DemandLines<'_> {
         Some(self.places.line(self.status, text, None, Vec::new(), Vec::new()))
     }
 
-    /// What vehicles see where they have to, or do not see where they must not, and from where (SPEC 10.5).
+    /// Returns what vehicles see where they have to, or do not see where they must not, and from where (SPEC 10.5).
     fn sights(&self) -> Vec<Line> {
         let mut lines = Vec::new();
         for link in &self.plan.causal_links {
@@ -146,7 +146,7 @@ impl DemandLines<'_> {
         lines
     }
 
-    /// What activities require of levels (SPEC 17).
+    /// Returns what activities require of levels (SPEC 17).
     fn levels(&self) -> Vec<Line> {
         let mut lines = Vec::new();
         let uses = &self.network.uses;
@@ -177,7 +177,7 @@ impl DemandLines<'_> {
         lines
     }
 
-    /// What the plan makes of a variable that keeps its value, from first to last.
+    /// Returns what the plan makes of a variable that keeps its value, from first to last.
     fn changes(&self, variable: usize) -> Vec<LabelId> {
         let labels = self.network.labels.iter().enumerate();
         let told = labels.filter(|(_, label)| {

@@ -31,7 +31,7 @@ impl Distances {
         Some(Self { network, pairs })
     }
 
-    /// How far it is from the second of two events to the first, and from the first to the second.
+    /// Returns how far it is from the second of two events to the first, and from the first to the second.
     fn on_the_tree(&self, from: NodeId, to: NodeId) -> Option<(i64, i64)> {
         let pairs = self.pairs.as_ref()?;
         let (from, to) = (self.network.point(from)?, self.network.point(to)?);
@@ -39,7 +39,7 @@ impl Distances {
         Some((distance(to, from)?, distance(from, to)?))
     }
 
-    /// Whether some schedule has the second of two events later than the first.
+    /// Returns whether some schedule has the second of two events later than the first.
     pub fn can_follow(&mut self, from: NodeId, to: NodeId) -> bool {
         let (Some(from), Some(to)) = (self.network.point(from), self.network.point(to)) else { return false };
         let known = self.pairs.as_ref().and_then(|pairs| pairs.between(from, to).ok().flatten());

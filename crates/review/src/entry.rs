@@ -25,26 +25,26 @@ pub struct Entry {
 const DOMAIN: &str = "enroute-signature/1\n";
 
 impl Entry {
-    /// What someone said, signed.
+    /// Returns what someone said, signed.
     pub fn signed(said: Said, secret: &SecretKey) -> Self {
         let said = Sealed::new(Said { key: Some(secret.public()), ..said });
         let signature = secret.sign(signed_bytes(said.digest()).as_bytes());
         Self { said, signature, is_signed: true }
     }
 
-    /// What was said, with what is written as its signature.
+    /// Returns what was said, with what is written as its signature.
     pub fn new(said: Sealed<Said>, signature: String) -> Self {
         let message = signed_bytes(said.digest());
         let is_signed = said.key.as_ref().is_some_and(|key| key.verify(message.as_bytes(), &signature));
         Self { said, signature, is_signed }
     }
 
-    /// What was said.
+    /// Returns what was said.
     pub fn said(&self) -> &Sealed<Said> {
         &self.said
     }
 
-    /// What is written of it.
+    /// Returns what is written of it.
     pub fn raw(&self) -> &Value {
         self.said.raw()
     }
@@ -59,7 +59,7 @@ impl Entry {
         &self.signature
     }
 
-    /// Whether the signature is that of the key that the entry names.
+    /// Returns whether the signature is that of the key that the entry names.
     pub fn is_signed(&self) -> bool {
         self.is_signed
     }
@@ -115,7 +115,7 @@ pub struct Said {
 }
 
 impl Said {
-    /// Whether the name, the role and the time can be seen as they are.
+    /// Returns whether the name, the role and the time can be seen as they are.
     pub fn is_visible(&self) -> bool {
         [&self.by, &self.role, &self.time].into_iter().all(|text| names::is_visible(text))
     }
@@ -179,7 +179,7 @@ impl Act {
         }
     }
 
-    /// What was said with it.
+    /// Returns what was said with it.
     pub fn text(&self) -> &str {
         match self {
             Self::Comment { text, .. }
@@ -285,7 +285,8 @@ impl Rate {
 }
 
 impl Subject {
-    /// What is approved when a review is of a mission without a map: `plan` is that of the reviewed content, as JSON.
+    /// Returns what is approved when a review is of a mission without a map: `plan` is that of the reviewed content, as
+    /// JSON.
     pub fn new(
         review: &Review,
         source: &str,
@@ -353,7 +354,7 @@ impl Runs {
         Sealed::new(self.clone()).digest().to_owned()
     }
 
-    /// What is known of the content's robustness.
+    /// Returns what is known of the content's robustness.
     pub fn robustness(&self) -> Robustness {
         let Self { runs, seed, uncertainty, tally, .. } = self.clone();
         Robustness { settings: RobustnessSettings { runs, seed, uncertainty }, tally }

@@ -99,7 +99,7 @@ impl Review {
     }
 }
 
-/// What a mission counts time in.
+/// Returns what a mission counts time in.
 pub(super) fn unit(snapshot: &Snapshot) -> &'static str {
     match snapshot.program.options.time_unit {
         TimeUnit::Minute => "min",
@@ -300,7 +300,7 @@ fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
 /// How many of the environment's ranges are listed.
 const MAX_RANGES: usize = 6;
 
-/// What the world would have to do as it suits the plan (SPEC 13.3).
+/// Returns what the world would have to do as it suits the plan (SPEC 13.3).
 fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let assumed = snapshot.problems.iter().filter(|problem| problem.code == exogenous::CODE.0);
     let line = |problem: &snapshot::Problem| {
@@ -361,8 +361,8 @@ fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
     }
 }
 
-/// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
-/// adds up the figures; that nothing is better rests on the planner alone, and the line says that.
+/// Returns what the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The
+/// checker adds up the figures; that nothing is better rests on the planner alone, and the line says that.
 fn worth(snapshot: &Snapshot, planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let mut text = tpn::worth::words(network, plan)?;

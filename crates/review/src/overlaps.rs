@@ -68,8 +68,8 @@ pub(super) fn overlaps(
     lines
 }
 
-/// Which vehicles each activity that the plan selects is of: those it moves, those among its arguments, and those whose
-/// place or other state it needs or changes. In a mission of one vehicle, that one does everything.
+/// Returns which vehicles each activity that the plan selects is of: those it moves, those among its arguments, and
+/// those whose place or other state it needs or changes. In a mission of one vehicle, that one does everything.
 pub(super) fn owners(
     snapshot: &Snapshot,
     network: &Network,
@@ -213,7 +213,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether both can be under way at some time as far as their windows say.
+    /// Returns whether both can be under way at some time as far as their windows say.
     fn windows_meet(&self, one: &Occurrence, other: &Occurrence) -> bool {
         let meets = |start: &Occurrence, end: &Occurrence| {
             let windows =
@@ -224,8 +224,8 @@ impl Search<'_> {
         meets(one, other) && meets(other, one)
     }
 
-    /// Whether some schedule of the plan has a time at which both are under way. One schedule has all of it if each part can
-    /// be, because no part is about more than two events of a cycle (SPEC 16.1).
+    /// Returns whether some schedule of the plan has a time at which both are under way. One schedule has all of it if
+    /// each part can be, because no part is about more than two events of a cycle (SPEC 16.1).
     fn may_overlap(&mut self, one: &Occurrence, other: &Occurrence) -> bool {
         let mut can_follow = |from, to| self.distances.can_follow(from, to);
         can_follow(one.start, other.end)

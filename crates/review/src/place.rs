@@ -103,7 +103,7 @@ impl<'n> Surroundings<'n> {
         format!("in {parent}, after {before}, before {after}")
     }
 
-    /// Which alternatives an occurrence is in, from the inside out, by their numbers from 1.
+    /// Returns which alternatives an occurrence is in, from the inside out, by their numbers from 1.
     fn alternatives_of(&self, id: OccurrenceId) -> Vec<usize> {
         let parent = |id: &OccurrenceId| self.network.occurrences[id.index()].parent;
         let callers = std::iter::successors(Some(id), parent);
@@ -111,7 +111,7 @@ impl<'n> Surroundings<'n> {
         spans.flat_map(|span| self.alternatives.around(span)).collect()
     }
 
-    /// What a line is about: the occurrences that it names, otherwise those that are written where it leads.
+    /// Returns what a line is about: the occurrences that it names, otherwise those that are written where it leads.
     fn about(&self, line: &Line) -> BTreeSet<OccurrenceId> {
         let named = line.names.iter().filter_map(|name| {
             let name = name.rsplit_once('@').map_or(name.as_str(), |(_, owner)| owner);

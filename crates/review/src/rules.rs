@@ -70,7 +70,7 @@ impl Default for FlightRules {
 }
 
 impl FlightRules {
-    /// What is wrong with the figures, if something is.
+    /// Returns what is wrong with the figures, if something is.
     pub fn problem(&self) -> Option<&'static str> {
         let is_length = |length: Option<f64>| length.is_none_or(|it| it.is_finite() && it >= 0.0);
         let is_share = |share: f64| (0.0..=1.0).contains(&share);
@@ -129,12 +129,12 @@ impl FlightRules {
         text
     }
 
-    /// Where a rule comes from, for people.
+    /// Returns where a rule comes from, for people.
     pub(super) fn source(is_default: impl Fn(&Self) -> bool) -> &'static str {
         if is_default(&Self::default()) { "flight rules, by default" } else { "flight rules of this mission" }
     }
 
-    /// Who has to approve, in words: `2 Science, 1 Mobility (of ab12 cd34 ef56 7890)`.
+    /// Returns who has to approve, in words: `2 Science, 1 Mobility (of ab12 cd34 ef56 7890)`.
     pub fn board_in_words(&self) -> String {
         let seats = self.board.iter().map(|seat| {
             let people: Vec<String> = seat.people.iter().map(PublicKey::fingerprint).collect();

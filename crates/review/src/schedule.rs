@@ -13,7 +13,7 @@ pub struct Scheduled {
     pub end: Window,
 }
 
-/// What a plan selects, by earliest start; at the same time what lasts longer comes first.
+/// Returns what a plan selects, by earliest start; at the same time what lasts longer comes first.
 pub fn scheduled(network: &Network, plan: &Plan) -> Vec<Scheduled> {
     let window = |node: tpn::NodeId| plan.windows.get(node.index()).copied().flatten();
     let mut found: Vec<Scheduled> = network
@@ -30,7 +30,7 @@ pub fn scheduled(network: &Network, plan: &Plan) -> Vec<Scheduled> {
     found
 }
 
-/// How much later than its earliest time an event with this window may happen.
+/// Returns how much later than its earliest time an event with this window may happen.
 pub fn slack(window: Window) -> Bound {
     window.latest.checked_sub(window.earliest).unwrap_or(Bound::Infinite)
 }

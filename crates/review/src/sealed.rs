@@ -34,7 +34,7 @@ impl<T: Serialize + DeserializeOwned> Sealed<T> {
         Ok(Self { value, raw, digest })
     }
 
-    /// What is written of it.
+    /// Returns what is written of it.
     pub fn raw(&self) -> &Value {
         &self.raw
     }

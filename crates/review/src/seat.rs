@@ -27,7 +27,7 @@ impl Seat {
         Self { role: role.to_owned(), approvals, people: Vec::new() }
     }
 
-    /// Whether the owner of a key approves in this role.
+    /// Returns whether the owner of a key approves in this role.
     pub fn admits(&self, key: &PublicKey) -> bool {
         self.people.is_empty() || self.people.contains(key)
     }
@@ -47,7 +47,7 @@ pub(super) fn default_board() -> Vec<Seat> {
     vec![Seat::new(DEFAULT_ROLE, 1)]
 }
 
-/// Whether a board is weaker than another one: a role is missing, needs fewer approvals, or admits more people.
+/// Returns whether a board is weaker than another one: a role is missing, needs fewer approvals, or admits more people.
 pub(super) fn weakens(before: &[Seat], after: &[Seat]) -> bool {
     let keeps = |seat: &Seat| {
         after.iter().any(|new| {
@@ -59,12 +59,12 @@ pub(super) fn weakens(before: &[Seat], after: &[Seat]) -> bool {
     !before.iter().all(keeps)
 }
 
-/// How many approvals a board needs.
+/// Returns how many approvals a board needs.
 pub(super) fn wanted(board: &[Seat]) -> usize {
     board.iter().map(|seat| seat.approvals as usize).sum()
 }
 
-/// How many approvals of a board these people could give at most, each of them one.
+/// Returns how many approvals of a board these people could give at most, each of them one.
 pub(super) fn filled(board: &[Seat], people: &BTreeSet<&PublicKey>) -> usize {
     let places: Vec<&Seat> =
         board.iter().flat_map(|seat| iter::repeat_n(seat, seat.approvals as usize)).collect();
@@ -95,7 +95,7 @@ fn seats_one<'a>(
     false
 }
 
-/// What is wrong with a board, if something is.
+/// Returns what is wrong with a board, if something is.
 pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
     let are_alike = |(index, seat): (usize, &Seat)| {
         board[..index].iter().any(|other| names::are_alike(&seat.role, &other.role))

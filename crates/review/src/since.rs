@@ -74,7 +74,7 @@ impl LineChange {
 }
 
 impl Since {
-    /// Whether nothing differs.
+    /// Returns whether nothing differs.
     pub fn is_nothing(&self) -> bool {
         self.text.is_empty()
             && self.plan.as_ref().is_none_or(Comparison::is_same)
@@ -84,7 +84,7 @@ impl Since {
     }
 }
 
-/// What differs between what was approved and a reviewed snapshot with the runs that were made of it.
+/// Returns what differs between what was approved and a reviewed snapshot with the runs that were made of it.
 pub fn since(approved: &Subject, snapshot: &Snapshot, review: &Review, found: Option<&Robustness>) -> Since {
     let plan = Side::of_json("approved", &approved.plan).ok();
     let rates = [approved.robustness, found.map(Rate::new)];

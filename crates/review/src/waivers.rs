@@ -26,7 +26,7 @@ impl WaiverState {
         }
     }
 
-    /// Whether the item may be as it is.
+    /// Returns whether the item may be as it is.
     pub const fn is_in_force(self) -> bool {
         matches!(self, Self::InForce | Self::AboutToLapse)
     }
@@ -53,7 +53,7 @@ impl Record {
         self.now().map(day_of)
     }
 
-    /// Whether a waiver that is signed now can lapse on this day, such as `2026-01-31`.
+    /// Returns whether a waiver that is signed now can lapse on this day, such as `2026-01-31`.
     pub fn may_lapse_on(&self, text: &str) -> bool {
         day(text).is_some_and(|until| can_lapse(self.today(), until))
     }

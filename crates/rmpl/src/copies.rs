@@ -204,7 +204,7 @@ impl Merger<'_, '_> {
         Some(copy::copies(&activities, &subjects, span).with_fix(fix))
     }
 
-    /// What all names begin with, if that is free; otherwise the name of the first.
+    /// Returns what all names begin with, if that is free; otherwise the name of the first.
     fn name(&self) -> &str {
         let first = self.first.text();
         let common = self.others.iter().fold(first.len(), |length, (other, _)| {

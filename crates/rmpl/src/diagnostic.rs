@@ -151,7 +151,7 @@ impl Listed {
     }
 }
 
-/// What can be read: long words lose their middle, and a long message its end.
+/// Returns what can be read: long words lose their middle, and a long message its end.
 fn legible(text: String) -> String {
     if text.len() <= MAX_WORD_CHARS {
         return text;
@@ -193,7 +193,7 @@ pub(crate) fn some_of(names: &[&str]) -> String {
 pub(crate) struct Known(FxHashSet<(Code, Span, String)>);
 
 impl Known {
-    /// Whether nothing of the kind has been said at this place, which from now on it has.
+    /// Returns whether nothing of the kind has been said at this place, which from now on it has.
     pub(crate) fn is_new(&mut self, found: &Diagnostic) -> bool {
         self.0.insert((found.code, found.span, found.message.clone()))
     }

@@ -19,7 +19,7 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// What edits come to, each of the text that those before it left.
+    /// Returns what edits come to, each of the text that those before it left.
     pub fn of<'edits>(edits: impl IntoIterator<Item = &'edits Edit>) -> Self {
         edits.into_iter().fold(Self::default(), Self::then)
     }
@@ -54,7 +54,7 @@ impl Shift {
         Self { start, removed: self.removed + around, inserted: self.inserted + around + inserted - removed }
     }
 
-    /// Whether no text was replaced by none.
+    /// Returns whether no text was replaced by none.
     pub const fn is_nothing(self) -> bool {
         self.removed == 0 && self.inserted == 0
     }
@@ -68,7 +68,7 @@ impl Shift {
         }
     }
 
-    /// Where what stood at `span` stands now, if the change is outside of it, or inside but not at its ends.
+    /// Returns where what stood at `span` stands now, if the change is outside of it, or inside but not at its ends.
     pub const fn moved(self, span: Span) -> Span {
         let end = if span.end <= self.start { span.end } else { self.behind(span.end) };
         // What is empty stays where it ends.
@@ -80,7 +80,7 @@ impl Shift {
         if offset >= self.start + self.removed { offset - self.removed + self.inserted } else { offset }
     }
 
-    /// Where a span of the old text is in the new one; `None` if all of it was replaced.
+    /// Returns where a span of the old text is in the new one; `None` if all of it was replaced.
     pub fn surviving(self, span: Span) -> Option<Span> {
         let (start, end) = (self.edge(span.start, true), self.edge(span.end, false));
         (start < end || span.start == span.end).then(|| Span::new(start, end))

@@ -77,7 +77,7 @@ impl Files {
         self.files.iter().find(|file| file.name == name)
     }
 
-    /// Where a place is in its own file, of the joined text `text` with the lines `lines`.
+    /// Returns where a place is in its own file, of the joined text `text` with the lines `lines`.
     pub fn line_column(&self, text: &str, lines: &LineIndex, offset: u32) -> LineColumn {
         let place = lines.line_column(text, offset);
         let start = self.at(offset).start;
@@ -156,12 +156,13 @@ pub fn split(text: &str) -> Vec<(&str, &str)> {
     files
 }
 
-/// Whether a file of a mission can have this name: one in the mission's folder, or in a folder of it, without a way out.
+/// Returns whether a file of a mission can have this name: one in the mission's folder, or in a folder of it, without a
+/// way out.
 pub fn is_name(name: &str) -> bool {
     !name.contains(char::is_control) && name.len() <= 255 && resolve("", name).as_deref() == Some(name)
 }
 
-/// What a text imports, in textual order.
+/// Returns what a text imports, in textual order.
 fn imports(text: &str) -> Vec<ImportDecl> {
     if text.contains("import") { parse(text).program().imports } else { Vec::new() }
 }
@@ -191,7 +192,7 @@ pub fn resolve(importer: &str, file: &str) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("/"))
 }
 
-/// What is wrong with the imports of a text.
+/// Returns what is wrong with the imports of a text.
 pub(crate) fn check(parse: &Parse, imports: &[(Span, ImportDecl)]) -> Vec<Diagnostic> {
     let files = Files::of(parse.text());
     if imports.is_empty() && files.all().len() == 1 {

@@ -66,8 +66,8 @@ impl Place {
         self.declaration.tree.root(text.get(self.start as usize..end as usize).unwrap_or(""), self.start)
     }
 
-    /// What the declaration declares, with places relative to it. It is made again whenever it is needed: a mission may have a
-    /// million declarations.
+    /// Returns what the declaration declares, with places relative to it. It is made again whenever it is needed: a
+    /// mission may have a million declarations.
     fn item(&self, text: &str) -> Option<Item> {
         let end = self.start + self.declaration.tree.len();
         let own = text.get(self.start as usize..end as usize).unwrap_or("");
@@ -126,7 +126,7 @@ impl Parse {
         &self.text
     }
 
-    /// How many declarations were parsed so far, those of earlier texts included.
+    /// Returns how many declarations were parsed so far, those of earlier texts included.
     pub const fn declarations_read(&self) -> u64 {
         self.declarations_read
     }
@@ -193,7 +193,7 @@ impl Parse {
         found
     }
 
-    /// Where the file that holds a place ends: nothing reaches beyond the heading of the next one.
+    /// Returns where the file that holds a place ends: nothing reaches beyond the heading of the next one.
     fn end_of_file(&self, at: u32) -> usize {
         let next = at as usize + 1;
         let rest = self.text.get(next..).and_then(|rest| rest.find(MARK));
@@ -291,8 +291,8 @@ impl Parse {
         self.places.get(after.checked_sub(1)?).map(|place| place.root(&self.text))
     }
 
-    /// What there is to tell the author, in textual order: of each severity the first [`MAX_LISTED`], of which the last
-    /// one says how many more there are.
+    /// Returns what there is to tell the author, in textual order: of each severity the first [`MAX_LISTED`], of which
+    /// the last one says how many more there are.
     ///
     /// [`MAX_LISTED`]: crate::diagnostic::MAX_LISTED
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
@@ -347,7 +347,7 @@ impl Parse {
         all.list
     }
 
-    /// What names mean in this file.
+    /// Returns what names mean in this file.
     pub(crate) const fn meaning(&self) -> Meaning<'_> {
         Meaning { names: &self.names, index: &self.index }
     }
@@ -357,7 +357,7 @@ impl Parse {
         self.places.iter().map(|place| (place.root(&self.text), &place.declaration.summary))
     }
 
-    /// What the text means, as far as it is well formed.
+    /// Returns what the text means, as far as it is well formed.
     pub fn program(&self) -> Program {
         let definitions =
             self.places.iter().filter_map(|place| place.declaration.summary.definition.as_ref());

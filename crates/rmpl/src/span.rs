@@ -22,12 +22,12 @@ impl Span {
         Self::new(self.start.min(other.start), self.end.max(other.end))
     }
 
-    /// Whether `offset` lies in the span or just after it, where a cursor still belongs to it.
+    /// Returns whether `offset` lies in the span or just after it, where a cursor still belongs to it.
     pub const fn touches(self, offset: u32) -> bool {
         self.start <= offset && offset <= self.end
     }
 
-    /// Whether all of `other` lies in the span.
+    /// Returns whether all of `other` lies in the span.
     pub const fn contains(self, other: Self) -> bool {
         self.start <= other.start && other.end <= self.end
     }

@@ -7,8 +7,8 @@ use terrain::Obstacle;
 
 use crate::vehicle::flies;
 
-/// What vehicles, by their indices, may not enter while `activity` moves them: obstacles unless all of them fly, and the
-/// keep-out areas that are closed to one of them, to its model, or to the activity.
+/// Returns what vehicles, by their indices, may not enter while `activity` moves them: obstacles unless all of them
+/// fly, and the keep-out areas that are closed to one of them, to its model, or to the activity.
 pub fn closed_to<'a>(
     world: &'a World,
     vehicles: &'a [usize],

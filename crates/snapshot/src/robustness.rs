@@ -37,8 +37,8 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Whether runs can differ from the plan at all: with nothing named, and everything else as the plan wants it, each
-    /// run is the plan itself. Components can fail only where the mission `runs_programs`.
+    /// Returns whether runs can differ from the plan at all: with nothing named, and everything else as the plan wants
+    /// it, each run is the plan itself. Components can fail only where the mission `runs_programs`.
     pub fn leaves_something_to_chance(&self, runs_programs: bool) -> bool {
         let is_named = !self.durations.is_empty() || !self.late.is_empty() || !self.withdrawn.is_empty();
         let is_driven = self.traverses == Traverses::Driven;
@@ -78,7 +78,7 @@ impl Default for Rocks {
 }
 
 impl Rocks {
-    /// Whether they can be drawn.
+    /// Returns whether they can be drawn.
     pub fn is_sound(&self) -> bool {
         let [least, greatest] = self.radius;
         let is_length = |length: f64| (0.0..1e6).contains(&length);
@@ -253,7 +253,7 @@ impl Tally {
 }
 
 impl Robustness {
-    /// Whether all runs have been made.
+    /// Returns whether all runs have been made.
     pub const fn is_complete(&self) -> bool {
         self.tally.runs >= self.settings.runs
     }
@@ -267,7 +267,7 @@ impl Uncertainty {
         durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
     }
 
-    /// What is wrong with it for the mission of `network`, if something is.
+    /// Returns what is wrong with it for the mission of `network`, if something is.
     pub fn problem(&self, network: &Network) -> Option<String> {
         let unknown = self.unknown_names(network);
         if !unknown.is_empty() {
@@ -313,7 +313,7 @@ impl Uncertainty {
 }
 
 impl Distribution {
-    /// What it draws is this and whole parts of a unit.
+    /// Returns what it draws is this and whole parts of a unit.
     pub fn least(self) -> Time {
         match self {
             Self::Fixed(least) | Self::Uniform(least, _) | Self::Triangular(least, ..) => least,
@@ -321,7 +321,7 @@ impl Distribution {
         }
     }
 
-    /// Whether it can be drawn from: in order, and not below 0.
+    /// Returns whether it can be drawn from: in order, and not below 0.
     pub fn is_sound(&self) -> bool {
         match *self {
             Self::Fixed(time) => !time.is_negative(),

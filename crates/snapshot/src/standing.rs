@@ -59,7 +59,7 @@ pub fn spacing_m(program: &Program, fly: bool) -> f64 {
     2.0 * room_m(&program.world, fly) * most_together(program) as f64
 }
 
-/// How many vehicles an activity moves at most, and at least one.
+/// Returns how many vehicles an activity moves at most, and at least one.
 fn most_together(program: &Program) -> usize {
     let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
     moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1)
@@ -90,7 +90,7 @@ pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f
     location_m + (from + (to - from) * part) * (spacing_m * ring as f64)
 }
 
-/// How far from its location a vehicle may stand, in meters, with its body and as much room again.
+/// Returns how far from its location a vehicle may stand, in meters, with its body and as much room again.
 pub fn reach_m(program: &Program) -> f64 {
     let world = &program.world;
     let all = || 0..world.vehicles.len() as u32;
@@ -123,7 +123,7 @@ pub struct Start {
     pub slot: usize,
 }
 
-/// Where each vehicle stands before it first moves; `None` if its start is not declared.
+/// Returns where each vehicle stands before it first moves; `None` if its start is not declared.
 pub fn starts(program: &Program, occurrences: &[Occurrence]) -> Vec<Option<Start>> {
     let world = &program.world;
     let spacings_m = [false, true].map(|fly| spacing_m(program, fly));

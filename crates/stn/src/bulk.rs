@@ -58,7 +58,7 @@ impl Stn {
         }
     }
 
-    /// Whether any point is left to relax.
+    /// Returns whether any point is left to relax.
     fn sweep<'a>(&mut self, order: impl Iterator<Item = &'a PointId>) -> Result<bool, Inconsistency> {
         let mut moved = false;
         for &point in order {

@@ -91,7 +91,7 @@ pub fn dispatchable(distances: &DistanceMatrix, points: &[PointId]) -> Dispatcha
     Dispatchable { components, num_edges_before_pruning, edges }
 }
 
-/// Whether an edge that is still present makes `from → to` superfluous.
+/// Returns whether an edge that is still present makes `from → to` superfluous.
 fn is_dominated(
     present: &[bool],
     count: usize,

@@ -21,7 +21,7 @@ impl DistanceMatrix {
         self.distances[from.index() * self.points + to.index()]
     }
 
-    /// How many points there are.
+    /// Returns how many points there are.
     pub fn num_points(&self) -> usize {
         self.points
     }

@@ -166,12 +166,12 @@ impl Stn {
         }
     }
 
-    /// How many time points there are.
+    /// Returns how many time points there are.
     pub fn num_points(&self) -> usize {
         self.potential.len()
     }
 
-    /// How many edges there are, with those withdrawn.
+    /// Returns how many edges there are, with those withdrawn.
     pub fn num_edges(&self) -> usize {
         self.edges.len()
     }
@@ -195,7 +195,7 @@ impl Stn {
         }
     }
 
-    /// How many points moved in the last insertion; twice what two of its edges moved.
+    /// Returns how many points moved in the last insertion; twice what two of its edges moved.
     pub fn num_changed(&self) -> usize {
         self.changed.len()
     }

@@ -48,8 +48,8 @@ impl PairDistances {
         Ok(Some(least))
     }
 
-    /// How far it is from a point to each of those above it, or back. `None` if its constraints lead to what is not in the
-    /// tree.
+    /// Returns how far it is from a point to each of those above it, or back. `None` if its constraints lead to what is
+    /// not in the tree.
     fn upwards(
         &self,
         point: u32,

@@ -116,7 +116,8 @@ impl Stn {
         Ok(())
     }
 
-    /// Whether the new edges, which end at `target`, close a negative cycle if `point` rises: then `cycle` has it.
+    /// Returns whether the new edges, which end at `target`, close a negative cycle if `point` rises: then `cycle` has
+    /// it.
     #[cold]
     fn closes_cycle(&mut self, point: u32, target: u32) -> bool {
         self.walk.clear();
@@ -143,8 +144,8 @@ impl Stn {
         }
     }
 
-    /// Whether constraints without slack keep `point` from being earlier unless `origin` is. Then `walk` has them, the
-    /// one at the origin last, and `point` cannot stay where it is if the origin rises.
+    /// Returns whether constraints without slack keep `point` from being earlier unless `origin` is. Then `walk` has
+    /// them, the one at the origin last, and `point` cannot stay where it is if the origin rises.
     fn hangs_on(&mut self, point: u32, origin: u32) -> bool {
         // Points that have risen already have left their constraints behind.
         if self.reach[point as usize].done == self.now {

@@ -123,7 +123,7 @@ impl Unfolding {
         bounds[depth]
     }
 
-    /// Whether a point has happened.
+    /// Returns whether a point has happened.
     pub fn has_happened(&self, point: PointId) -> bool {
         self.has_happened[point.index()]
     }

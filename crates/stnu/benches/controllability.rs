@@ -52,7 +52,7 @@ fn row(shape: Shape) {
     );
 }
 
-/// What an edge between random points costs that was not there before, and its undo.
+/// Returns what an edge between random points costs that was not there before, and its undo.
 fn edge_and_undo(network: &Network) -> Option<f64> {
     let mut checker = Checker::build(network.clone(), &mut || false).ok()?;
     let mut random = Random::new(1);

@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use crate::checker::{Stop, Undecided, Verdict, check};
 use crate::network::{EdgeId, Link, LinkId, Network, PointId};
 
-/// What is left of a network at `now`, when some points have happened and nothing else has before: a network with one
-/// more point, the last, whose time is 0. Links that have started are as long as they can still be.
+/// Returns what is left of a network at `now`, when some points have happened and nothing else has before: a network
+/// with one more point, the last, whose time is 0. Links that have started are as long as they can still be.
 pub fn residual(network: &Network, times: &[Option<i64>], now: i64) -> Result<Network, Undecided> {
     let mut left = Network::new(network.num_points());
     for edge in network.edges() {

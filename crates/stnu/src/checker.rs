@@ -407,7 +407,7 @@ pub(crate) fn path(nodes: &[Node], mut node: u32) -> impl Iterator<Item = u32> {
     })
 }
 
-/// Whether an arc makes a point come closer to a link's end.
+/// Returns whether an arc makes a point come closer to a link's end.
 fn changes(row: &Row, link: &Link, from: u32, to: u32, weight: i64) -> bool {
     match row.distance(to) {
         Some(distance) if distance < link.spread() => {

@@ -66,7 +66,7 @@ pub(crate) enum CyclePart {
 }
 
 impl Conflict {
-    /// How often the cycle goes along a part.
+    /// Returns how often the cycle goes along a part.
     pub fn multiplicity(&self, part: Part) -> u64 {
         self.members.iter().find(|member| member.part == part).map_or(0, |member| member.multiplicity)
     }

@@ -135,7 +135,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         &self.times
     }
 
-    /// Whether everything has happened.
+    /// Returns whether everything has happened.
     pub fn is_done(&self) -> bool {
         self.times.iter().all(Option::is_some)
     }
@@ -144,7 +144,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         (0..self.times.len() as u32).map(PointId)
     }
 
-    /// What can be said about a point now.
+    /// Returns what can be said about a point now.
     pub fn status(&self, point: PointId) -> Status {
         let at = point.index();
         if let Some(time) = self.times[at] {

@@ -95,7 +95,7 @@ impl Draft {
         Ok(Document { names: self.names, network, scale, is_rounded })
     }
 
-    /// Whether whatever is summed along paths stays within 64 bits.
+    /// Returns whether whatever is summed along paths stays within 64 bits.
     fn fits(&self, scale: Scale) -> bool {
         scale == Scale::UNITS
             || self
@@ -129,7 +129,7 @@ pub enum Layout {
 }
 
 impl Document {
-    /// Whether a text is to be read here rather than as a plain STN: it is `GraphML`, or its kind is `STNU`.
+    /// Returns whether a text is to be read here rather than as a plain STN: it is `GraphML`, or its kind is `STNU`.
     pub fn is_uncertain(text: &str) -> bool {
         let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
         Layout::of(text) == Layout::GraphMl

@@ -146,7 +146,7 @@ impl Network {
         Ok(id)
     }
 
-    /// How many time points there are.
+    /// Returns how many time points there are.
     pub const fn num_points(&self) -> usize {
         self.points
     }

@@ -87,7 +87,7 @@ impl ConfigurationSpace {
         Self { radius_m, regions, radius, ..self.clone() }
     }
 
-    /// Where the map lies.
+    /// Returns where the map lies.
     pub const fn frame(&self) -> &GridFrame {
         self.occupancy.frame()
     }
@@ -147,13 +147,13 @@ impl ConfigurationSpace {
         Some(distance * self.frame().cell_size_m - self.radius_m)
     }
 
-    /// Whether the vehicle's center can be at a point.
+    /// Returns whether the vehicle's center can be at a point.
     pub fn is_free(&self, point_m: Point2<f64>) -> bool {
         let Some(cell) = self.frame().cell_at(point_m) else { return false };
         self.is_free_in_cell(self.frame().to_cells(point_m), cell)
     }
 
-    /// What is in the way of a vehicle at a point; `None` when it is free.
+    /// Returns what is in the way of a vehicle at a point; `None` when it is free.
     pub fn collision_at(&self, point_m: Point2<f64>) -> Option<Collision> {
         let Some(own) = self.frame().cell_at(point_m) else { return Some(Collision::OutsideMap) };
         let point = self.frame().to_cells(point_m);
@@ -168,8 +168,8 @@ impl ConfigurationSpace {
         Some(Collision::Cell { cell, state: self.occupancy.state(cell) })
     }
 
-    /// Whether the vehicle's center can move straight from one point to another: every point between is free, to
-    /// within a billionth of a cell. Time is proportional to the number of cells passed near obstacles.
+    /// Returns whether the vehicle's center can move straight from one point to another: every point between is free,
+    /// to within a billionth of a cell. Time is proportional to the number of cells passed near obstacles.
     pub fn is_segment_free(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         let (Some(first), Some(_)) = (self.frame().cell_at(from_m), self.frame().cell_at(to_m)) else {
             return false;
@@ -204,8 +204,8 @@ impl ConfigurationSpace {
         Some(least)
     }
 
-    /// Whether it is proved that no path joins two points: an outer bound of the free places falls into pieces, and
-    /// the points lie in different ones. `false` proves nothing. Constant time.
+    /// Returns whether it is proved that no path joins two points: an outer bound of the free places falls into pieces,
+    /// and the points lie in different ones. `false` proves nothing. Constant time.
     pub fn are_separated(&self, a_m: Point2<f64>, b_m: Point2<f64>) -> bool {
         let (Some(a), Some(b)) = (self.frame().cell_at(a_m), self.frame().cell_at(b_m)) else { return true };
         !self.regions.joined(self.frame().index(a), self.frame().index(b))
@@ -227,7 +227,7 @@ impl ConfigurationSpace {
         f64::from(self.clearance[self.frame().index(cell)])
     }
 
-    /// Whether a point in units of cells, which lies in `cell`, is free.
+    /// Returns whether a point in units of cells, which lies in `cell`, is free.
     fn is_free_in_cell(&self, point: Point2<f64>, cell: Cell) -> bool {
         if self.is_occupied(cell) {
             return false;
@@ -266,7 +266,8 @@ impl ConfigurationSpace {
             .filter(|&cell| self.flags[self.frame().index(cell)] & BORDER != 0)
     }
 
-    /// Whether some occupied border cell around `own` is nearer than the radius by a measure of squared distance.
+    /// Returns whether some occupied border cell around `own` is nearer than the radius by a measure of squared
+    /// distance.
     fn near_border_cell(&self, own: Cell, squared_distance: impl Fn(Point2<f64>) -> f64) -> bool {
         let limit = (self.radius - TOLERANCE).max(0.0);
         let limit = limit * limit;
@@ -322,7 +323,7 @@ impl ConfigurationSpace {
         }
     }
 
-    /// Whether the piece of a segment that lies in a cell is free.
+    /// Returns whether the piece of a segment that lies in a cell is free.
     fn piece_is_free(&self, walk: &Walk, cell: Cell, clearance: f64, start: f64, end: f64) -> bool {
         if self.is_occupied(cell) {
             return false;
@@ -357,7 +358,7 @@ impl ConfigurationSpace {
     }
 }
 
-/// Whether some point of a cell may be free: an outer bound.
+/// Returns whether some point of a cell may be free: an outer bound.
 fn possibly_free(radius: f64, clearance: f64, occupied: bool) -> bool {
     !occupied && clearance + HALF_DIAGONAL + CLEARANCE_ROUNDING >= radius
 }

@@ -54,7 +54,7 @@ impl Regions {
         Self { labels }
     }
 
-    /// Whether both cells are in the set and in one piece.
+    /// Returns whether both cells are in the set and in one piece.
     pub(crate) fn joined(&self, a: usize, b: usize) -> bool {
         self.labels[a] != NONE && self.labels[a] == self.labels[b]
     }
@@ -81,8 +81,8 @@ const PIECES: u32 = 4;
 /// Maps with more cells are not cut: it would take gigabytes.
 const MAX_CELLS_CUT: usize = 1 << 22;
 
-/// Whether two points are in different pieces of an outer bound of the free places, made of cells cut in sixteen. `false`
-/// on a map of more than four million cells.
+/// Returns whether two points are in different pieces of an outer bound of the free places, made of cells cut in
+/// sixteen. `false` on a map of more than four million cells.
 pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: Point2<f64>, b_m: Point2<f64>) -> bool {
     let frame = *space.frame();
     if frame.cell_count() > MAX_CELLS_CUT {

@@ -21,7 +21,7 @@ pub(crate) struct Crater {
 const REACH_RADII: f64 = 3.0;
 
 impl Crater {
-    /// How much higher the ground lies because of the crater, in meters, at a distance from its center.
+    /// Returns how much higher the ground lies because of the crater, in meters, at a distance from its center.
     pub(crate) fn height_m(&self, distance_m: f64) -> f64 {
         let rim = 0.04 * self.diameter_m * self.freshness;
         let depth = 0.2 * self.diameter_m * self.freshness;

@@ -66,7 +66,7 @@ impl GridFrame {
         self.origin_m + point_cells.coords * self.cell_size_m
     }
 
-    /// Whether a point lies in the grid or on its border.
+    /// Returns whether a point lies in the grid or on its border.
     pub fn contains(&self, point_m: Point2<f64>) -> bool {
         let far = self.far_corner_m();
         (0..2).all(|axis| point_m[axis] >= self.origin_m[axis] && point_m[axis] <= far[axis])

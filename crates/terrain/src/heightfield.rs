@@ -73,7 +73,7 @@ impl Terrain {
         self
     }
 
-    /// Where the map lies.
+    /// Returns where the map lies.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
@@ -96,12 +96,12 @@ impl Terrain {
         self.mapped_rock_m2 / (extent_m.x * extent_m.y)
     }
 
-    /// Whether a cell has no height.
+    /// Returns whether a cell has no height.
     pub fn is_no_data(&self, cell: Cell) -> bool {
         self.no_data.get(self.frame.index(cell)).copied().unwrap_or(false)
     }
 
-    /// Whether a cell is an obstacle of the map itself.
+    /// Returns whether a cell is an obstacle of the map itself.
     pub fn is_obstacle(&self, cell: Cell) -> bool {
         self.obstacles.get(self.frame.index(cell)).copied().unwrap_or(false)
     }

@@ -37,7 +37,7 @@ impl Obstacle {
         }
     }
 
-    /// Whether a point lies in the shape; the border of a polygon may count either way.
+    /// Returns whether a point lies in the shape; the border of a polygon may count either way.
     pub fn contains(&self, point_m: Point2<f64>) -> bool {
         match self {
             Self::Circle { center_m, radius_m } => {
@@ -95,7 +95,7 @@ fn sides(corners: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
-/// Whether a segment shares a point with a closed box: clipping after Liang and Barsky (1984).
+/// Returns whether a segment shares a point with a closed box: clipping after Liang and Barsky (1984).
 pub(crate) fn segment_meets_box(a: Point2<f64>, b: Point2<f64>, low: Point2<f64>, high: Point2<f64>) -> bool {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {

@@ -79,7 +79,7 @@ impl Occupancy {
         Self { frame, states: occupied.iter().map(state).collect() }
     }
 
-    /// What the map and `obstacles`, which are closed to the vehicle, leave to it.
+    /// Returns what the map and `obstacles`, which are closed to the vehicle, leave to it.
     pub fn of_terrain(terrain: &Terrain, obstacles: &[Obstacle], traversability: &Traversability) -> Self {
         let frame = *terrain.frame();
         let mut grid = Self::free(frame);
@@ -136,7 +136,7 @@ impl Occupancy {
         Self { frame, states: (0..frame.cell_count()).map(state).collect() }
     }
 
-    /// Where the grid lies.
+    /// Returns where the grid lies.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }

@@ -193,7 +193,7 @@ fn surface_height(recipe: &Recipe, point_m: Point2<f64>) -> f64 {
     hills + recipe.fan.map_or(0.0, |fan| fan_height(&fan, &recipe.frame, seed, point_m))
 }
 
-/// How far a delta raises a point, in meters.
+/// Returns how far a delta raises a point, in meters.
 fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, point_m: Point2<f64>) -> f64 {
     let (x, y) = (point_m.x, point_m.y);
     let offset = point_m.coords - fan.apex.coords.component_mul(&frame.extent_m());
@@ -213,7 +213,7 @@ fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, point_m: Point2<f64>) -> 
     plateau * (fan.height_m * (1.0 - 0.3 * distance / fan.length_m) - fan.channel_depth_m * channel * fade_in)
 }
 
-/// How far sand raises a point, in meters: crests across the wind, steeper in their lee.
+/// Returns how far sand raises a point, in meters: crests across the wind, steeper in their lee.
 fn dune_height(dunes: &Dunes, seed: u32, point_m: Point2<f64>) -> f64 {
     let (x, y) = (point_m.x, point_m.y);
     let patch = fractal_noise(seed ^ 0xd0, x / 90.0, y / 90.0, 3, 0.5);

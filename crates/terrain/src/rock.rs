@@ -20,7 +20,7 @@ impl Rock {
     /// The least diameter of a rock that shows on a map of 0.6 m cells.
     pub const MAPPED_DIAMETER_M: f64 = 1.0;
 
-    /// Whether the rock is big enough to be on the map; smaller ones are met on the way (SPEC 7.4).
+    /// Returns whether the rock is big enough to be on the map; smaller ones are met on the way (SPEC 7.4).
     pub fn is_mapped(&self) -> bool {
         self.diameter_m >= Self::MAPPED_DIAMETER_M
     }

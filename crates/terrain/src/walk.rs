@@ -23,7 +23,7 @@ pub(crate) struct Cursor {
 }
 
 impl Cursor {
-    /// How far along the segment it leaves this cell.
+    /// Returns how far along the segment it leaves this cell.
     pub(crate) fn crossing(&self) -> f64 {
         self.crossings[0].min(self.crossings[1]).max(self.at)
     }
@@ -73,7 +73,7 @@ impl Walk {
         }
     }
 
-    /// How far along the segment it leaves a column (axis 0) or row (axis 1).
+    /// Returns how far along the segment it leaves a column (axis 0) or row (axis 1).
     pub(crate) fn crossing_of(&self, axis: usize, cell: i64) -> f64 {
         let direction = self.direction[axis];
         if direction > 0.0 {

@@ -73,7 +73,7 @@ impl Camera {
         Vec3::new(self.yaw_rad.cos() * flat, self.yaw_rad.sin() * flat, -self.pitch_rad.sin())
     }
 
-    /// Where the eye is.
+    /// Returns where the eye is.
     pub fn eye_m(&self) -> Vec3 {
         self.target_m - self.forward() * self.distance_m
     }
@@ -154,12 +154,12 @@ impl Camera {
         self.target_m = point_m + (self.target_m - point_m) * (self.distance_m / before);
     }
 
-    /// What tells where points appear in an image of `size` points.
+    /// Returns what tells where points appear in an image of `size` points.
     pub fn projector(&self, size: Vec2) -> Projector {
         Projector { clip_from_world: self.clip_from_world(size.x / size.y.max(1.0)), size }
     }
 
-    /// Where `point_m` appears in an image of `size` points; `None` behind the eye.
+    /// Returns where `point_m` appears in an image of `size` points; `None` behind the eye.
     pub fn project(&self, point_m: Vec3, size: Vec2) -> Option<Vec2> {
         self.projector(size).project(point_m)
     }
@@ -182,7 +182,7 @@ pub struct Projector {
 }
 
 impl Projector {
-    /// Where `point_m` appears, in points from the top left; `None` behind the eye.
+    /// Returns where `point_m` appears, in points from the top left; `None` behind the eye.
     pub fn project(&self, point_m: Vec3) -> Option<Vec2> {
         let clip = self.clip_from_world * point_m.extend(1.0);
         if clip.w <= 0.01 {

@@ -59,7 +59,7 @@ fn bounds(ground: &Ground, patch: Patch) -> (Vec3, Vec3) {
     (Vec3::new(at(0, 0), at(1, 0), ground.range_m[0]), Vec3::new(at(0, side), at(1, side), ground.range_m[1]))
 }
 
-/// Whether all corners of a box lie outside the same side of the image.
+/// Returns whether all corners of a box lie outside the same side of the image.
 fn outside(clip_from_world: &Mat4, low: Vec3, high: Vec3) -> bool {
     let corners: [Vec4; 8] = std::array::from_fn(|index| {
         let pick = |bit: usize, axis: usize| if index >> bit & 1 == 1 { high[axis] } else { low[axis] };

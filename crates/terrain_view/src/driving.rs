@@ -99,7 +99,7 @@ fn rays(
     }
 }
 
-/// Where a ray from the middle of a body with this radius leaves it; `None` if it ends before.
+/// Returns where a ray from the middle of a body with this radius leaves it; `None` if it ends before.
 fn outside_of_body(origin: Vec2, end: Vec2, radius_m: f32) -> Option<Vec2> {
     let length_m = origin.distance(end);
     (length_m > radius_m).then(|| origin.lerp(end, radius_m / length_m))

@@ -143,7 +143,7 @@ impl TerrainImage {
         }
     }
 
-    /// Whether the graphics card holds a ground of this size: some browsers allow textures of 2048 a side only.
+    /// Returns whether the graphics card holds a ground of this size: some browsers allow textures of 2048 a side only.
     pub fn holds(state: &RenderState, ground: &Ground) -> bool {
         ground.width.max(ground.height) <= max_side(state)
     }

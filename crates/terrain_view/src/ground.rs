@@ -97,7 +97,7 @@ impl Ground {
         place_m.clamp(self.origin_m, self.origin_m + self.size_m())
     }
 
-    /// Whether a place is on the map.
+    /// Returns whether a place is on the map.
     pub fn contains(&self, place_m: Vec2) -> bool {
         let cell = (place_m - self.origin_m) / self.cell_m;
         cell.x >= 0.0
@@ -106,7 +106,7 @@ impl Ground {
             && cell.y <= (self.height - 1) as f32
     }
 
-    /// Where a ray first meets the ground on the map.
+    /// Returns where a ray first meets the ground on the map.
     pub fn hit(&self, origin_m: Vec3, direction: Vec3) -> Option<Vec3> {
         let step = self.cell_m * 0.5;
         let (mut near, mut far) = (0.0_f32, 20_000.0_f32);

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-/// Whether a place is inside an outline.
+/// Returns whether a place is inside an outline.
 pub fn is_inside(corners: &[Vec2], point: Vec2) -> bool {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let crossings = sides.filter(|(a, b)| {

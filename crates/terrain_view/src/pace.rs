@@ -12,7 +12,7 @@ pub enum Savings {
 }
 
 impl Savings {
-    /// Which part of the pixels is drawn in each direction.
+    /// Returns which part of the pixels is drawn in each direction.
     pub const fn resolution(self) -> f32 {
         match self {
             Self::None => 1.0,
@@ -62,7 +62,7 @@ impl Pace {
         }
     }
 
-    /// What is to be left out.
+    /// Returns what is to be left out.
     pub const fn savings(&self) -> Savings {
         self.savings
     }

@@ -65,7 +65,7 @@ impl Scene<'_> {
         self.hit(pointer).map(Vec3::truncate)
     }
 
-    /// What is under a point of the window.
+    /// Returns what is under a point of the window.
     pub fn pick(&self, pointer: Pos2) -> Selection {
         if let Some((_, named)) = self.plates.iter().find(|(plate, _)| plate.contains(pointer)) {
             return named.clone();
@@ -82,8 +82,9 @@ impl Scene<'_> {
         obstacle.map_or(Selection::None, |it| Selection::Obstacle(it.name.text.clone()))
     }
 
-    /// What a drag from a point of the window takes hold of: the vehicle or the post that is there, or anything that is
-    /// selected. A name, or a whole obstacle, is no handle: turning the view must not move what it happens to begin on.
+    /// Returns what a drag from a point of the window takes hold of: the vehicle or the post that is there, or anything
+    /// that is selected. A name, or a whole obstacle, is no handle: turning the view must not move what it happens to
+    /// begin on.
     pub fn pick_handle(&self, pointer: Pos2) -> Option<Selection> {
         let picked = self.pick(pointer);
         if !picked.is_none() && picked == *self.state.selection {
@@ -156,7 +157,7 @@ impl Scene<'_> {
     }
 }
 
-/// Where a selected thing is at `time`.
+/// Returns where a selected thing is at `time`.
 pub fn place_of(snapshot: &Snapshot, selection: &Selection, time: f64) -> Option<Vec2> {
     let world = &snapshot.program.world;
     match selection {
@@ -185,7 +186,7 @@ pub fn place_of(snapshot: &Snapshot, selection: &Selection, time: f64) -> Option
     }
 }
 
-/// How much ground a selected thing takes up, in meters.
+/// Returns how much ground a selected thing takes up, in meters.
 pub fn extent_of(snapshot: &Snapshot, selection: &Selection) -> f32 {
     let points: Vec<Vec2> = if let Selection::Obstacle(name) = selection {
         let obstacles = &snapshot.program.world.obstacles;
@@ -207,7 +208,7 @@ fn middle(points: &[Vec2]) -> Vec2 {
     points.iter().copied().sum::<Vec2>() / points.len().max(1) as f32
 }
 
-/// Whether a place is inside an obstacle.
+/// Returns whether a place is inside an obstacle.
 pub fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
     match shape {
         ObstacleShape::Circle { center_m, radius_m } => {
@@ -220,7 +221,7 @@ pub fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
     }
 }
 
-/// Which part of the way from `from` to `to` is nearest to `point`, from 0 to 1.
+/// Returns which part of the way from `from` to `to` is nearest to `point`, from 0 to 1.
 pub fn nearest_part(point: Vec2, from: Vec2, to: Vec2) -> f32 {
     let along = to - from;
     if along.length_squared() > 0.0 {

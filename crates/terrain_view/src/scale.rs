@@ -1,6 +1,6 @@
 //! How large things are drawn from how far away.
 
-/// How much larger than life vehicles are drawn: so large that they can be seen.
+/// Returns how much larger than life vehicles are drawn: so large that they can be seen.
 pub fn vehicle_scale(distance_m: f32) -> f32 {
     (distance_m / 45.0).clamp(1.0, 12.0)
 }

@@ -145,7 +145,7 @@ pub fn place(point_m: impl Into<Point2<f64>>) -> Vec2 {
     Vec2::new(point_m.x as f32, point_m.y as f32)
 }
 
-/// Where a vehicle is and where its nose points at `time`: on its way, or at its start.
+/// Returns where a vehicle is and where its nose points at `time`: on its way, or at its start.
 pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(Vec2, f32)> {
     let motion = snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle);
     if let Some((motion, (position, heading))) = motion.and_then(|motion| Some((motion, motion.at(time)?))) {
@@ -175,7 +175,7 @@ fn smooth_heading(motion: &snapshot::VehicleMotion, time: f64) -> Option<f32> {
     (ahead.length() > 1e-3).then(|| ahead.to_angle())
 }
 
-/// How high over the ground below a vehicle flies at a place; `None` for one that drives.
+/// Returns how high over the ground below a vehicle flies at a place; `None` for one that drives.
 pub fn flight_height_m(ground: &Ground, world: &World, vehicle: &VehicleDecl, place_m: Vec2) -> Option<f32> {
     let model = snapshot::vehicle::model(world, &vehicle.model.text)?;
     let motion::Drive::Flight { altitude_band_m: [low, high], ground_clearance_m, .. } = model.drive else {

@@ -71,7 +71,7 @@ impl Relief {
         Self { width, height, pixel_m, heights_m }
     }
 
-    /// Where the light of a sun in the direction `toward` reaches.
+    /// Returns where the light of a sun in the direction `toward` reaches.
     pub fn lit_from(&self, toward: Vec3) -> Sunlight {
         let flat = toward.truncate().length();
         let (width, height) = (self.width as usize, self.height as usize);

@@ -18,7 +18,7 @@ pub enum Shot {
 /// The camera stays at a vehicle that stops for at most this share of the run.
 const SHORT_STOP: f64 = 0.02;
 
-/// What the camera is on at `time` of a plan or run that ends at `end`.
+/// Returns what the camera is on at `time` of a plan or run that ends at `end`.
 pub fn shot(motions: &[VehicleMotion], time: f64, end: f64) -> Shot {
     let bridged = end * SHORT_STOP;
     let under_way = motions.iter().filter_map(|motion| {
@@ -29,7 +29,7 @@ pub fn shot(motions: &[VehicleMotion], time: f64, end: f64) -> Shot {
     last.map_or(Shot::Map, |(_, vehicle)| Shot::Vehicle(vehicle))
 }
 
-/// How far the camera has turned around what it is on at `time`: half way around in the whole run.
+/// Returns how far the camera has turned around what it is on at `time`: half way around in the whole run.
 pub fn turn_rad(time: f64, end: f64) -> f32 {
     if end > 0.0 { (time / end) as f32 * PI } else { 0.0 }
 }

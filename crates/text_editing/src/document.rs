@@ -39,7 +39,7 @@ impl Caret {
         self.anchor.min(self.head)..self.anchor.max(self.head)
     }
 
-    /// Whether no text is selected.
+    /// Returns whether no text is selected.
     pub const fn is_empty(self) -> bool {
         self.anchor == self.head
     }
@@ -146,7 +146,7 @@ impl Document {
         }
     }
 
-    /// Whether the text has changed since it was opened or saved.
+    /// Returns whether the text has changed since it was opened or saved.
     pub fn is_modified(&self) -> bool {
         self.revision() != self.saved_revision
     }
@@ -185,7 +185,7 @@ impl Document {
         self.text.get(self.caret.range()).unwrap_or_default()
     }
 
-    /// How many lines there are; an empty text has one.
+    /// Returns how many lines there are; an empty text has one.
     pub fn line_count(&self) -> usize {
         self.line_starts.len()
     }
@@ -236,7 +236,7 @@ impl Document {
         self.line_range(lines.start).start..self.line_range(lines.end.max(lines.start + 1) - 1).end
     }
 
-    /// Whether a replacement would change where a file begins or what it is called.
+    /// Returns whether a replacement would change where a file begins or what it is called.
     fn is_of_heading(&self, start: usize, end: usize) -> bool {
         self.headings.iter().any(|&heading| {
             let line = self.line_range(heading);
@@ -353,12 +353,12 @@ impl Document {
         self.edit_freely(&[edit], EditKind::Single, None);
     }
 
-    /// Whether there is something to undo.
+    /// Returns whether there is something to undo.
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty()
     }
 
-    /// Whether there is something to redo.
+    /// Returns whether there is something to redo.
     pub fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
@@ -421,7 +421,7 @@ impl Default for Document {
     }
 }
 
-/// Where `offset` ends up when `removed` bytes at `start` become `inserted` bytes.
+/// Returns where `offset` ends up when `removed` bytes at `start` become `inserted` bytes.
 fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize {
     if offset < start {
         offset

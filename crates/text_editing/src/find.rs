@@ -65,7 +65,7 @@ impl Pattern {
         before.or_else(|| self.matches(text).last())
     }
 
-    /// What the match on exactly `range` becomes; `None` if there is no match there.
+    /// Returns what the match on exactly `range` becomes; `None` if there is no match there.
     pub fn replacement(
         &self,
         text: &str,

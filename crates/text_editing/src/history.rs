@@ -45,7 +45,7 @@ impl Change {
     }
 }
 
-/// Whether `next` is undone together with `last`.
+/// Returns whether `next` is undone together with `last`.
 pub(crate) fn joins(last: &Step, next: &Step) -> bool {
     if last.kind != next.kind {
         return false;

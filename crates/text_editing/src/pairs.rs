@@ -40,8 +40,8 @@ pub(crate) fn insert(document: &mut Document, text: &str) -> bool {
     true
 }
 
-/// Whether what closes is there already, and only what opens is missing: of brackets in the whole text, of quotes in the
-/// line.
+/// Returns whether what closes is there already, and only what opens is missing: of brackets in the whole text, of
+/// quotes in the line.
 fn is_owed(document: &Document, at: usize, open: &str, close: &str) -> bool {
     if open == close {
         let line = document.line_text(document.line_at(at));
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::{Motion, TextCommand};
 
-    /// What typing leaves, with a bar where the caret is.
+    /// Returns what typing leaves, with a bar where the caret is.
     fn typed(start: &str, keys: &str) -> String {
         let mut document = Document::new(&start.replace('|', ""));
         document.set_caret(Caret::at(start.find('|').unwrap_or(start.len())));

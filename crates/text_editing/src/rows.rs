@@ -31,7 +31,7 @@ impl Rows {
         line
     }
 
-    /// How many rows so many lines take.
+    /// Returns how many rows so many lines take.
     pub fn count(&self, num_lines: usize) -> usize {
         num_lines - self.hidden.iter().map(Range::len).sum::<usize>()
     }
@@ -41,7 +41,7 @@ impl Rows {
         self.hidden.iter().find(|hidden| hidden.contains(&line)).cloned()
     }
 
-    /// Whether the lines after this one are folded away.
+    /// Returns whether the lines after this one are folded away.
     pub fn is_folded_at(&self, line: usize) -> bool {
         self.hidden.iter().any(|hidden| hidden.start == line + 1)
     }

@@ -29,7 +29,7 @@ impl Document {
         self.stops = Stops { range, left: stops.chain(outer.left).collect() };
     }
 
-    /// Whether Tab goes to another stop of a template.
+    /// Returns whether Tab goes to another stop of a template.
     pub fn has_stops(&self) -> bool {
         !self.stops.left.is_empty()
     }

@@ -187,7 +187,7 @@ pub fn word_at(text: &str, offset: usize) -> std::ops::Range<usize> {
     offset - left..offset + right
 }
 
-/// Whether a character is part of names such as `Group-Traverse-Path`.
+/// Returns whether a character is part of names such as `Group-Traverse-Path`.
 pub fn is_name_character(c: char) -> bool {
     c.is_alphanumeric() || c == '_' || c == '-'
 }
@@ -322,7 +322,7 @@ fn move_caret(document: &mut Document, motion: Motion, select: bool) {
     document.set_caret(Caret { anchor, head, goal_column });
 }
 
-/// Where a motion leads from the caret, and the column it keeps.
+/// Returns where a motion leads from the caret, and the column it keeps.
 fn destination(document: &Document, motion: Motion) -> (usize, Option<usize>) {
     let text = document.text();
     let head = document.caret().head;
@@ -474,7 +474,7 @@ fn toggle_comment(document: &mut Document) {
     document.edit(&edits, EditKind::Single, None);
 }
 
-/// How a line is commented out: control programs (SPEC 2) are in prefix form and use `;`.
+/// Returns how a line is commented out: control programs (SPEC 2) are in prefix form and use `;`.
 fn comment_marker(text: &str) -> &'static str {
     let mut lines = text.lines().map(str::trim_start).filter(|line| !line.is_empty());
     if lines.clone().any(|line| line.starts_with("//")) {

@@ -19,8 +19,9 @@ const TAB_COLUMNS: usize = 4;
 /// Characters from here on are twice as wide: Hangul, Han, Kana, full-width forms, pictographs.
 const FIRST_WIDE: char = '\u{1100}';
 
-/// Where a line breaks into rows of so many columns, in bytes of the line; at least one row. Rows end after blanks and
-/// signs where they can, and within a word where it is longer than a row. One blank may hang over the end of a row.
+/// Returns where a line breaks into rows of so many columns, in bytes of the line; at least one row. Rows end after
+/// blanks and signs where they can, and within a word where it is longer than a row. One blank may hang over the end of
+/// a row.
 fn break_line(text: &str, columns: usize) -> Vec<Range<usize>> {
     let columns = columns.max(MIN_WRAP_COLUMNS);
     // A character has no more columns than bytes, but for tabs.
@@ -101,7 +102,7 @@ impl Document {
             .map_or(0, |columns| hanging_columns(self.line_text(line), columns))
     }
 
-    /// Which of the rows of its line holds `offset`.
+    /// Returns which of the rows of its line holds `offset`.
     pub fn row_in_line(&self, offset: usize) -> usize {
         let rows = self.rows_of_line(self.line_at(offset));
         rows.partition_point(|row| row.start <= offset).saturating_sub(1)
@@ -208,7 +209,7 @@ impl WrappedRows {
         (line, row.saturating_sub(self.first_rows.get(line).copied().unwrap_or_default()))
     }
 
-    /// How many rows there are.
+    /// Returns how many rows there are.
     pub fn count(&self) -> usize {
         self.first_rows.last().copied().unwrap_or_default()
     }

@@ -12,8 +12,8 @@ const MIN_ARGUMENT: usize = 6;
 const MAX_NAMED: usize = 2;
 
 impl Network {
-    /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path(A, …, TAI_POS)` where
-    /// the call is long, or `Drive(RIDGE), Dig#1 and 2 more`. `nothing` where it does nothing.
+    /// Returns what an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path(A, …,
+    /// TAI_POS)` where the call is long, or `Drive(RIDGE), Dig#1 and 2 more`. `nothing` where it does nothing.
     ///
     /// Takes time linear in the network for each alternative of the decision.
     pub fn alternative_name(&self, decision: DecisionId, alternative: u32) -> String {

@@ -62,8 +62,8 @@ impl Exchanges {
         Self { exchanges: exchanges.collect() }
     }
 
-    /// What tells a plan apart from those that differ in more than exchanged vehicles: the least that exchanging vehicles
-    /// leads to.
+    /// Returns what tells a plan apart from those that differ in more than exchanged vehicles: the least that
+    /// exchanging vehicles leads to.
     pub fn least(&self, plan: &Plan) -> Distinction {
         let mut least = Distinction::of(plan);
         while let Some(lesser) = self.exchanges.iter().find_map(|exchange| exchange.lesser(&least)) {
@@ -74,7 +74,7 @@ impl Exchanges {
 }
 
 impl Distinction {
-    /// What tells a plan apart from all others.
+    /// Returns what tells a plan apart from all others.
     pub fn of(plan: &Plan) -> Self {
         Self {
             choices: plan.choices.clone(),
@@ -151,7 +151,7 @@ impl Exchange {
         }
     }
 
-    /// What tells the plan with exchanged vehicles apart, if that is less.
+    /// Returns what tells the plan with exchanged vehicles apart, if that is less.
     fn lesser(&self, plan: &Distinction) -> Option<Distinction> {
         let choice = |choice: &Choice| {
             let Some((decision, moved)) = self.decisions.get(&choice.decision) else { return *choice };
@@ -182,7 +182,7 @@ impl Exchange {
     }
 }
 
-/// What holds at first of two vehicles that are exchanged.
+/// Returns what holds at first of two vehicles that are exchanged.
 fn initial(network: &Network, one: &str, other: &str) -> BTreeMap<LabelId, LabelId> {
     let of = |vehicle: &str| -> BTreeMap<&str, LabelId> {
         let labels = network.labels.iter().enumerate().filter(|(_, label)| label.extent == Extent::Initial);

@@ -446,7 +446,7 @@ pub enum ValueSet {
 }
 
 impl ValueSet {
-    /// Whether no value is in both.
+    /// Returns whether no value is in both.
     pub fn is_disjoint(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::In(left), Self::In(right)) => left.iter().all(|value| right.binary_search(value).is_err()),
@@ -458,7 +458,7 @@ impl ValueSet {
         }
     }
 
-    /// Whether a value is one of these.
+    /// Returns whether a value is one of these.
     pub fn contains(&self, value: ValueId) -> bool {
         match self {
             Self::In(values) => values.binary_search(&value).is_ok(),
@@ -466,7 +466,7 @@ impl ValueSet {
         }
     }
 
-    /// Whether every value of `self` is in `other`.
+    /// Returns whether every value of `self` is in `other`.
     pub fn is_subset(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::In(left), Self::In(right)) => left.iter().all(|value| right.binary_search(value).is_ok()),
@@ -482,12 +482,12 @@ impl ValueSet {
 }
 
 impl Literal {
-    /// Whether the two cannot hold together (SPEC 3.1).
+    /// Returns whether the two cannot hold together (SPEC 3.1).
     pub fn conflicts(&self, other: &Self) -> bool {
         self.variable == other.variable && self.values.is_disjoint(&other.values)
     }
 
-    /// Whether asserting `self` makes `required` hold.
+    /// Returns whether asserting `self` makes `required` hold.
     pub fn supports(&self, required: &Self) -> bool {
         self.variable == required.variable && self.values.is_subset(&required.values)
     }
@@ -609,7 +609,7 @@ impl Use {
         if self.level.is_some() { self.end } else { self.moment() }
     }
 
-    /// Whether it requires a level from one event to another, and not only before one.
+    /// Returns whether it requires a level from one event to another, and not only before one.
     pub fn is_lasting(&self) -> bool {
         self.level.is_some() && self.start != self.end
     }
@@ -647,14 +647,15 @@ impl Use {
 }
 
 impl Arc {
-    /// Whether it keeps its events at one instant, so that what is nature's at one is nature's at the other (SPEC 13.1).
+    /// Returns whether it keeps its events at one instant, so that what is nature's at one is nature's at the other
+    /// (SPEC 13.1).
     pub fn is_tie(&self) -> bool {
         self.lower.is_zero() && self.upper == Bound::ZERO && !self.is_contingent
     }
 }
 
 impl Label {
-    /// What it does, as its name says: `Ask`, `Tell`, `Set` or `Init`.
+    /// Returns what it does, as its name says: `Ask`, `Tell`, `Set` or `Init`.
     pub const fn verb(&self) -> &'static str {
         match (self.mode, self.extent) {
             (LabelMode::Ask, _) => "Ask",
@@ -664,7 +665,7 @@ impl Label {
         }
     }
 
-    /// Whether a variable that keeps its value has none while this continues.
+    /// Returns whether a variable that keeps its value has none while this continues.
     pub fn is_changing(&self) -> bool {
         self.extent == Extent::Effect
     }
@@ -727,13 +728,13 @@ impl Network {
         if self.labels[label.index()].is_changing() { end } else { start }
     }
 
-    /// Whether a label is about a variable that keeps its value (SPEC 10).
+    /// Returns whether a label is about a variable that keeps its value (SPEC 10).
     pub fn is_lasting(&self, label: LabelId) -> bool {
         self.variables[self.labels[label.index()].literal.variable.index()].is_lasting
     }
 
-    /// Whether two labels may not overlap: of a variable that keeps its value, changes exclude each other and what
-    /// requires another value (SPEC 10.2); of others, conditions that cannot hold together (SPEC 3.1).
+    /// Returns whether two labels may not overlap: of a variable that keeps its value, changes exclude each other and
+    /// what requires another value (SPEC 10.2); of others, conditions that cannot hold together (SPEC 3.1).
     pub fn conflict(&self, one: LabelId, other: LabelId) -> bool {
         let is_lasting = self.is_lasting(one);
         let (left, right) = (&self.labels[one.index()], &self.labels[other.index()]);
@@ -758,13 +759,14 @@ impl Network {
         arcs.filter(|(_, arc)| arc.kind == ArcKind::Constraint).map(|(id, _)| ArcId::from_index(id))
     }
 
-    /// Whether the environment chooses a duration, and the mission does not say to plan as if it did not (SPEC 13.1).
+    /// Returns whether the environment chooses a duration, and the mission does not say to plan as if it did not (SPEC
+    /// 13.1).
     pub fn is_uncertain(&self, arc: ArcId) -> bool {
         self.controllability != Controllability::None && self.arcs[arc.index()].is_contingent
     }
 
-    /// Which events the environment executes where these arcs are selected: the ends of durations that it chooses, and
-    /// what is tied to them by `[0,0]` (SPEC 13.1). Indexed by node; empty if there are none.
+    /// Returns which events the environment executes where these arcs are selected: the ends of durations that it
+    /// chooses, and what is tied to them by `[0,0]` (SPEC 13.1). Indexed by node; empty if there are none.
     pub fn natures_events(&self, selected_arcs: &[bool]) -> Vec<bool> {
         let is_selected = |arc: ArcId| selected_arcs.get(arc.index()).copied().unwrap_or(false);
         let mut open: Vec<NodeId> = (0..self.arcs.len())
@@ -797,7 +799,7 @@ impl Network {
         natures
     }
 
-    /// Whether the objective counts meters: driven ones, or the cost of each.
+    /// Returns whether the objective counts meters: driven ones, or the cost of each.
     pub fn counts_meters(&self) -> bool {
         let has_cost = self.worths.iter().any(|worth| !worth.cost_per_meter.is_zero());
         let counted = |measure: Measure| match measure {
@@ -854,8 +856,8 @@ impl Network {
         }
     }
 
-    /// How many labels before this one have its owner, what it does, and its condition. They begin at one event: arcs
-    /// of one owner do.
+    /// Returns how many labels before this one have its owner, what it does, and its condition. They begin at one
+    /// event: arcs of one owner do.
     fn earlier_namesakes(&self, label: LabelId) -> usize {
         let of = &self.labels[label.index()];
         let from = self.arcs[of.arc.index()].from;

@@ -259,7 +259,7 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
     })
 }
 
-/// How many pairs `conflict_order` leaves out.
+/// Returns how many pairs `conflict_order` leaves out.
 fn omitted(plan: &Value) -> Result<usize, PlanError> {
     let Some(stated) = plan.get("conflict_order_omitted") else { return Ok(0) };
     let count = stated.as_u64().and_then(|count| usize::try_from(count).ok());

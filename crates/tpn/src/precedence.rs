@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// Which of the pairs, each of an earlier and a later interval, do not follow from the others (the transitive reduction).
-/// All are needed where they go in circles. Linear in the pairs times the intervals, 64 at a time.
+/// Returns which of the pairs, each of an earlier and a later interval, do not follow from the others (the transitive
+/// reduction). All are needed where they go in circles. Linear in the pairs times the intervals, 64 at a time.
 pub fn needed(pairs: &[[usize; 2]]) -> Vec<bool> {
     let mut places: BTreeMap<usize, usize> = pairs.iter().flatten().map(|&interval| (interval, 0)).collect();
     for (place, at) in places.values_mut().enumerate() {

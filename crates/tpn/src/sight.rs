@@ -28,7 +28,7 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// Why the location is not in sight from the place.
+    /// Returns why the location is not in sight from the place.
     pub fn reason(&self) -> String {
         match self.blocked_at_m {
             Some([east, north, _]) => {
@@ -53,7 +53,7 @@ pub fn sight_text(variable: &str, location: &str) -> String {
 }
 
 impl Network {
-    /// What decides about a label, if it is about what is in sight.
+    /// Returns what decides about a label, if it is about what is in sight.
     pub fn sight(&self, label: &Label) -> Option<&Sight> {
         let text = label.text.strip_prefix("not(").map_or(label.text.as_str(), |text| {
             // The closing parenthesis of `visible(…)` stays.
@@ -65,7 +65,8 @@ impl Network {
         })
     }
 
-    /// Why a location is not in sight from the places to which `changes` take the vehicle of an Ask: three reasons at most.
+    /// Returns why a location is not in sight from the places to which `changes` take the vehicle of an Ask: three
+    /// reasons at most.
     pub fn unseen<'a>(&self, ask: &Label, changes: impl Iterator<Item = &'a Label>) -> Vec<String> {
         let Some(sight) = self.sight(ask).filter(|_| !ask.text.starts_with("not(")) else {
             return Vec::new();

@@ -37,7 +37,7 @@ pub fn to_text(network: &Network) -> String {
     text
 }
 
-/// What is on an arc: its bounds, its labels and its activity.
+/// Returns what is on an arc: its bounds, its labels and its activity.
 fn arc_text(network: &Network, id: ArcId) -> String {
     let arc = &network.arcs[id.index()];
     let mut text = format!("{} {}", bounds_text(arc), kind_name(arc.kind));

@@ -6,7 +6,8 @@ use crate::{Network, Plan};
 use exact::Rational;
 use rmpl::program::Measure;
 
-/// What matters of the plans of a network: what the objective counts, and costs and rewards that some activity has.
+/// Returns what matters of the plans of a network: what the objective counts, and costs and rewards that some activity
+/// has.
 pub fn measures(network: &Network) -> Vec<Measure> {
     let counted = |measure: Measure| {
         let terms = network.objective.iter().flat_map(|goal| &goal.terms);
@@ -22,7 +23,7 @@ pub fn measures(network: &Network) -> Vec<Measure> {
     all.into_iter().filter(|&measure| counted(measure)).collect()
 }
 
-/// What a plan comes to in one measure: `cost 30`, `end 45`.
+/// Returns what a plan comes to in one measure: `cost 30`, `end 45`.
 pub fn figure(plan: &Plan, measure: Measure) -> String {
     let quality = &plan.quality;
     match measure {
@@ -39,8 +40,8 @@ pub fn words(network: &Network, plan: &Plan) -> Option<String> {
     (!figures.is_empty()).then(|| figures.join(", "))
 }
 
-/// What a plan comes to in each goal of its mission's objective, with so many meters driven, rounded up to the millimeter;
-/// `None` where a number does not fit.
+/// Returns what a plan comes to in each goal of its mission's objective, with so many meters driven, rounded up to the
+/// millimeter; `None` where a number does not fit.
 pub fn goal_values(network: &Network, plan: &Plan, driven_m: f64) -> Option<Vec<Rational>> {
     let quality = &plan.quality;
     let value = |measure: Measure| match measure {

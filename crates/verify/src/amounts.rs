@@ -48,7 +48,7 @@ impl Taken {
         if self.level.is_some() { self.end } else { self.moment() }
     }
 
-    /// Whether it lets the level be so, if it is a condition.
+    /// Returns whether it lets the level be so, if it is a condition.
     pub(crate) fn allows(&self, level: i128) -> bool {
         self.level.is_none_or(|bound| if self.is_production { level <= bound } else { level >= bound })
     }
@@ -72,7 +72,7 @@ pub(crate) fn taken(
     Taken { used, start: of.start, end: of.end, amount, at_least, is_production, level }
 }
 
-/// Whether the plan selects a use.
+/// Returns whether the plan selects a use.
 pub(crate) fn is_selected(network: &Network, plan: &Plan, used: UseId) -> bool {
     plan.selected_arcs[network.uses[used.index()].arc.index()]
 }
@@ -136,7 +136,7 @@ impl Shared {
         self.unscaled(amount).map_or_else(|| format!("{amount}/{}", self.scale), |amount| amount.to_string())
     }
 
-    /// How much of it a use takes or gives, for people: `4`, `28.5 to 40`.
+    /// Returns how much of it a use takes or gives, for people: `4`, `28.5 to 40`.
     pub(crate) fn show_amount(&self, of: &Taken) -> String {
         let amount = self.show(of.amount);
         if of.at_least == of.amount { amount } else { format!("{} to {amount}", self.show(of.at_least)) }
@@ -160,7 +160,7 @@ pub(crate) fn list(network: &Network, shared: &Shared, uses: &[Taken]) -> String
     }
 }
 
-/// Who uses a resource: `Radio#1`, or the use's own name.
+/// Returns who uses a resource: `Radio#1`, or the use's own name.
 pub(crate) fn user_name(network: &Network, used: UseId) -> String {
     let owner = network.uses[used.index()].owner;
     match owner.and_then(|owner| network.occurrences.get(owner.index())) {

@@ -118,7 +118,7 @@ impl Flow {
         }
     }
 
-    /// Whether more can flow to the sink; and for each node an edge by which more can reach it.
+    /// Returns whether more can flow to the sink; and for each node an edge by which more can reach it.
     fn reach(&self, source: usize, sink: usize) -> (bool, Vec<Option<usize>>) {
         let mut by: Vec<Option<usize>> = vec![None; self.leaving.len()];
         let mut queue = std::collections::VecDeque::from([source]);

@@ -49,7 +49,7 @@ enum Origin {
     Shortest(usize, Vec<u32>),
 }
 
-/// Why no strategy keeps all of `edges`, if none does. `points` is the number of points.
+/// Returns why no strategy keeps all of `edges`, if none does. `points` is the number of points.
 ///
 /// Constraints that follow from constraints that follow from shortest durations are found in as many rounds as they are
 /// deep, at most one for each link; in each, only those links are looked at again from whose ends something new can be
@@ -135,9 +135,9 @@ struct Reached {
     is_implied: bool,
 }
 
-/// What must happen before a link's end is seen, as constraints on its start. Points are looked at in the order of
-/// distance from the end; the constraint on the start leads to one that is before it, so that from there on only that is
-/// found out what follows anyway. Returns the points that were looked beyond.
+/// Returns what must happen before a link's end is seen, as constraints on its start. Points are looked at in the order
+/// of distance from the end; the constraint on the start leads to one that is before it, so that from there on only
+/// that is found out what follows anyway. Returns the points that were looked beyond.
 fn before_the_end(
     place: usize,
     links: &[Link],
@@ -218,7 +218,7 @@ fn before_the_end(
     looked_beyond
 }
 
-/// What a cycle of steps depends on.
+/// Returns what a cycle of steps depends on.
 fn unfold(steps: &[Step], cycle: Vec<u32>) -> Vec<Part> {
     let mut parts = BTreeSet::new();
     let mut seen = BTreeSet::new();
@@ -243,8 +243,8 @@ fn unfold(steps: &[Step], cycle: Vec<u32>) -> Vec<Part> {
     parts.into_iter().collect()
 }
 
-/// Why no times that are fixed beforehand keep all of `edges`, if none do: each edge must hold for the durations that are
-/// worst for it.
+/// Returns why no times that are fixed beforehand keep all of `edges`, if none do: each edge must hold for the
+/// durations that are worst for it.
 pub(crate) fn refute_strong(points: usize, edges: &[Edge], links: &[Link]) -> Option<Vec<Part>> {
     let ending: BTreeMap<u32, usize> =
         links.iter().enumerate().map(|(place, link)| (link.end, place)).collect();

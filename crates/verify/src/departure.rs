@@ -40,7 +40,7 @@ pub(crate) fn arrivals(network: &Network, plan: &Plan) -> BTreeSet<LabelId> {
         .collect()
 }
 
-/// What the network knows of a movement that starts where a producer leaves the vehicle.
+/// Returns what the network knows of a movement that starts where a producer leaves the vehicle.
 pub(crate) fn known(network: &Network, arrival: LabelId, before: LabelId) -> Option<&Departure> {
     let values = &network.labels[before.index()].literal.values;
     let starts_there = |departure: &&Departure| {

@@ -22,7 +22,7 @@ impl Entailment {
         Self { distances, order, latest, earliest }
     }
 
-    /// Whether `later − earlier ≥ least` in every schedule.
+    /// Returns whether `later − earlier ≥ least` in every schedule.
     pub(crate) fn is_at_least(&self, earlier: NodeId, later: NodeId, least: i128) -> bool {
         if let (Some(at_least), Some(at_most)) = (self.earliest[later.index()], self.latest[earlier.index()])
             && at_least - at_most >= least
@@ -32,12 +32,12 @@ impl Entailment {
         self.distances.between(later.0, earlier.0).is_some_and(|distance| distance <= -least)
     }
 
-    /// Whether one event happens before another in the plan (SPEC 10.4).
+    /// Returns whether one event happens before another in the plan (SPEC 10.4).
     pub(crate) fn happens_before(&self, earlier: NodeId, later: NodeId) -> bool {
         self.order.is_before(earlier, later).unwrap_or_else(|| self.is_at_least(earlier, later, 0))
     }
 
-    /// Whether one event happens before another, if the windows and the order of their instant alone tell.
+    /// Returns whether one event happens before another, if the windows and the order of their instant alone tell.
     fn is_before_by_windows(&self, earlier: NodeId, later: NodeId) -> Option<bool> {
         if let Some(is_before) = self.order.is_before(earlier, later) {
             return Some(is_before);
@@ -115,7 +115,7 @@ impl Precedence {
         made
     }
 
-    /// Whether the end of `one` happens before the start of `other`. No interval comes before itself.
+    /// Returns whether the end of `one` happens before the start of `other`. No interval comes before itself.
     pub(crate) fn is_before(&self, one: usize, other: usize) -> bool {
         self.after[one * self.words + other / 64] >> (other % 64) & 1 == 1
     }
@@ -178,7 +178,7 @@ impl<'distances> Lookup<'distances> {
         Self { distances, node, direction, has_searched: false, all: None }
     }
 
-    /// Whether the distance from the node to `other`, or from `other` to it, is at most zero.
+    /// Returns whether the distance from the node to `other`, or from `other` to it, is at most zero.
     fn is_at_most_zero(&mut self, other: NodeId) -> bool {
         let distance = if std::mem::replace(&mut self.has_searched, true) {
             let all = self.all.get_or_insert_with(|| match self.direction {

@@ -23,12 +23,12 @@ pub(crate) fn interval(network: &Network, label: LabelId) -> Interval {
     Interval { label, start: arc.from, end, is_instant: is_at_start || has_no_length }
 }
 
-/// Whether the plan selects the label's arc.
+/// Returns whether the plan selects the label's arc.
 pub(crate) fn is_selected(network: &Network, plan: &Plan, label: LabelId) -> bool {
     plan.selected_arcs[network.labels[label.index()].arc.index()]
 }
 
-/// Whether the label is of a variable that keeps its value (SPEC 10).
+/// Returns whether the label is of a variable that keeps its value (SPEC 10).
 pub(crate) fn is_lasting(network: &Network, label: LabelId) -> bool {
     let variable = network.labels[label.index()].literal.variable;
     network.variables.get(variable.index()).is_some_and(|variable| variable.is_lasting)

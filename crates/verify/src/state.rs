@@ -74,12 +74,13 @@ impl Producer {
         &network.labels[self.label.index()].literal.values
     }
 
-    /// Whether rule 2 keeps the two apart: one of them is changing, or their values differ.
+    /// Returns whether rule 2 keeps the two apart: one of them is changing, or their values differ.
     pub(crate) fn excludes(&self, other: &Self, network: &Network) -> bool {
         self.is_changing || other.is_changing || self.values(network) != other.values(network)
     }
 
-    /// Whether it can make a requirement hold: its value is one that is required, and nothing rests on its own effect.
+    /// Returns whether it can make a requirement hold: its value is one that is required, and nothing rests on its own
+    /// effect.
     pub(crate) fn supports(&self, requirement: &Requirement, network: &Network) -> bool {
         self.has_value_of(requirement, network) && !is_own_effect(network, self.label, requirement.label)
     }
@@ -88,19 +89,19 @@ impl Producer {
         self.values(network).is_subset(&network.labels[requirement.label.index()].literal.values)
     }
 
-    /// Whether rule 1 keeps it away from a requirement that another producer supports.
+    /// Returns whether rule 1 keeps it away from a requirement that another producer supports.
     pub(crate) fn threatens(&self, requirement: &Requirement, network: &Network) -> bool {
         self.is_changing || !self.has_value_of(requirement, network)
     }
 }
 
-/// Whether a label is the effect of the very activity that another one is required for.
+/// Returns whether a label is the effect of the very activity that another one is required for.
 pub(crate) fn is_own_effect(network: &Network, effect: LabelId, required: LabelId) -> bool {
     let (effect, required) = (&network.labels[effect.index()], &network.labels[required.index()]);
     effect.extent == Extent::Effect && effect.arc == required.arc
 }
 
-/// Who a labeled interval belongs to, for people: `Deploy#1`, or the interval's own name.
+/// Returns who a labeled interval belongs to, for people: `Deploy#1`, or the interval's own name.
 pub(crate) fn owner_name(network: &Network, label: LabelId) -> String {
     match network.labels[label.index()].owner.and_then(|owner| network.occurrences.get(owner.index())) {
         Some(owner) => owner.name.to_string(),

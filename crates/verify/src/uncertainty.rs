@@ -4,15 +4,16 @@ use exact::Bound;
 use rmpl::program::Controllability;
 use tpn::{ArcId, Network};
 
-/// Whether the environment chooses the duration of a selected arc, and the mission asks for plans that withstand that.
+/// Returns whether the environment chooses the duration of a selected arc, and the mission asks for plans that
+/// withstand that.
 pub(crate) fn is_uncertain(network: &Network, selected_arcs: &[bool], arc: ArcId) -> bool {
     network.controllability != Controllability::None
         && network.arcs[arc.index()].is_contingent
         && selected_arcs[arc.index()]
 }
 
-/// Whether the environment executes each node: a duration that it chooses ends there, or at an event at the same
-/// instant because of `[0,0]` alone.
+/// Returns whether the environment executes each node: a duration that it chooses ends there, or at an event at the
+/// same instant because of `[0,0]` alone.
 pub(crate) fn natures_events(network: &Network, selected_arcs: &[bool]) -> Vec<bool> {
     let mut natures = vec![false; network.nodes.len()];
     let mut ties = Vec::new();

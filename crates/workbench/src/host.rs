@@ -59,12 +59,12 @@ pub trait Host {
     /// Tells the other tabs that show this page; [`HostEvent::TabSaid`] is how they hear it.
     fn tell_tabs(&mut self, message: &str);
 
-    /// Whether the user wants nothing to move by itself.
+    /// Returns whether the user wants nothing to move by itself.
     fn reduces_motion(&self) -> bool {
         false
     }
 
-    /// Whether this is a page in Firefox, which keeps some keys for itself.
+    /// Returns whether this is a page in Firefox, which keeps some keys for itself.
     fn is_firefox(&self) -> bool {
         false
     }
@@ -79,7 +79,7 @@ pub trait Host {
     /// key press: browsers refuse otherwise.
     fn open_file(&mut self, kind: FileKind);
 
-    /// Whether missions are saved to files that the user chose once, by [`Host::save_in_place`].
+    /// Returns whether missions are saved to files that the user chose once, by [`Host::save_in_place`].
     fn saves_in_place(&self) -> bool {
         false
     }
@@ -115,7 +115,7 @@ pub trait Host {
     /// Ends the video and lets the user save it; [`HostEvent::FileFailed`] says if there is none.
     fn save_film(&mut self, _suggested_name: &str) {}
 
-    /// What is after `#` in the page's address; empty outside a page.
+    /// Returns what is after `#` in the page's address; empty outside a page.
     fn fragment(&self) -> String;
 
     /// Replaces what is after `#` in the page's address, without a new entry in the history. Does nothing
@@ -255,7 +255,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// What a file of this name is opened for; a mission if its extension says nothing.
+    /// Returns what a file of this name is opened for; a mission if its extension says nothing.
     pub fn of_name(name: &str) -> Self {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
         let is_one = |kind: &Self| kind.extensions().contains(&extension.as_str());
@@ -268,7 +268,7 @@ impl FileKind {
         if self == Self::Map || is_mission_file { MAX_FILE_BYTES } else { MAX_TEXT_BYTES }
     }
 
-    /// What the file dialog calls it.
+    /// Returns what the file dialog calls it.
     pub fn title(self) -> &'static str {
         match self {
             Self::Mission => "Missions and networks",

@@ -6,7 +6,7 @@ pub const MAX_TEXT_BYTES: usize = 4 << 20;
 /// The largest map, or mission with its maps in one file, in bytes.
 pub const MAX_FILE_BYTES: usize = 256 << 20;
 
-/// Why something of so many bytes is not taken where `most` are; nothing if it is.
+/// Returns why something of so many bytes is not taken where `most` are; nothing if it is.
 pub fn too_large(bytes: usize, most: usize) -> Option<String> {
     let megabytes = |bytes: usize| bytes as f64 / f64::from(1 << 20);
     (bytes > most).then(|| {

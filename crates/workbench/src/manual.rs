@@ -150,7 +150,7 @@ fn with_known_signs(text: &str) -> String {
     SIGNS.iter().fold(text, |text, (sign, shown)| text.replace(sign, shown))
 }
 
-/// What every kind of problem means, one section each.
+/// Returns what every kind of problem means, one section each.
 fn diagnostics() -> String {
     let mut text =
         "# Diagnostics\n\nThe meaning of each error and warning, with an example and a corrected version.\n"
@@ -176,8 +176,8 @@ pub fn page_named(name: &str) -> Option<&'static Page> {
     PAGES.iter().find(|page| page.name == name)
 }
 
-/// Where a link leads inside the manual: a page and a section, which may be empty. `language.md#bounds`, and `#bounds`
-/// on the page `here`; nothing for what leads elsewhere.
+/// Returns where a link leads inside the manual: a page and a section, which may be empty. `language.md#bounds`, and
+/// `#bounds` on the page `here`; nothing for what leads elsewhere.
 pub fn target(link: &str, here: &str) -> Option<(&'static str, String)> {
     let (file, section) = link.split_once('#').unwrap_or((link, ""));
     let name = file.rsplit('/').next().unwrap_or(file);

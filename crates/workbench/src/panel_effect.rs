@@ -32,7 +32,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// What files of this format end in.
+    /// Returns what files of this format end in.
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Svg => "svg",
@@ -94,13 +94,13 @@ impl PanelEffects {
         taken
     }
 
-    /// What waits, oldest first.
+    /// Returns what waits, oldest first.
     pub fn waiting(&self) -> &[PanelEffect] {
         &self.waiting
     }
 }
 
-/// Whether `newer` makes `earlier` pointless.
+/// Returns whether `newer` makes `earlier` pointless.
 fn replaces(newer: PanelEffect, earlier: PanelEffect) -> bool {
     use PanelEffect::{Arrange, FocusEditor, FocusPanel, ResetLayout, Reveal, View};
     match (newer, earlier) {

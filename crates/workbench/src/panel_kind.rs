@@ -107,12 +107,12 @@ impl PanelKind {
         Self::ALL.into_iter().find(|panel| panel.name() == name)
     }
 
-    /// Whether it has a view that can be zoomed and fitted.
+    /// Returns whether it has a view that can be zoomed and fitted.
     pub fn is_zoomable(self) -> bool {
         self.entry().properties.contains(&Property::Zoomable)
     }
 
-    /// Whether it draws the mission as planned, and is marked while what is drawn is of an earlier text.
+    /// Returns whether it draws the mission as planned, and is marked while what is drawn is of an earlier text.
     pub fn is_marked_when_stale(self) -> bool {
         self.entry().properties.contains(&Property::MarkedWhenStale)
     }

@@ -90,7 +90,7 @@ impl Session {
         &mut self.state
     }
 
-    /// What runs around the workbench: clock, files, storage and the planning core.
+    /// Returns what runs around the workbench: clock, files, storage and the planning core.
     pub fn host(&self) -> &dyn Host {
         self.host.as_ref()
     }

@@ -35,7 +35,7 @@ pub fn interval(earliest: Time, latest: Bound) -> String {
     format!("[{}, {}]", short(earliest), short_bound(latest))
 }
 
-/// What is between the two, short enough for a table; `∞` if the latest is.
+/// Returns what is between the two, short enough for a table; `∞` if the latest is.
 pub fn slack(earliest: Time, latest: Bound) -> String {
     match latest.checked_sub(earliest) {
         Some(slack) => short_bound(slack),

@@ -16,7 +16,7 @@ extern "C" {
     #[derive(Clone)]
     pub type WorkerHost;
 
-    /// Whether the page waits for something newer.
+    /// Returns whether the page waits for something newer.
     #[wasm_bindgen(method, js_name = isSuperseded)]
     fn is_superseded(this: &WorkerHost) -> bool;
 

@@ -352,7 +352,7 @@ impl std::fmt::Display for Frames {
     }
 }
 
-/// How measured times are spread: half of them, nine in ten, and all are within.
+/// Returns how measured times are spread: half of them, nine in ten, and all are within.
 fn spread(mut times: Vec<f64>) -> String {
     times.sort_by(f64::total_cmp);
     let at = |part: usize| times[((times.len() - 1) * part + 50) / 100];

@@ -60,7 +60,7 @@ impl Rules {
         Ok(Self { allowed: texts(licenses.get("allow")), exceptions: exceptions.collect::<Result<_>>()? })
     }
 
-    /// What is wrong with the packages of `cargo metadata`, a line each.
+    /// Returns what is wrong with the packages of `cargo metadata`, a line each.
     pub fn check(&self, metadata: &Value) -> Vec<String> {
         let packages = metadata["packages"].as_array().into_iter().flatten();
         packages.flat_map(|package| self.check_package(package)).collect()

@@ -69,12 +69,12 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// How many disturbances there were.
+    /// Returns how many disturbances there were.
     pub fn runs(&self) -> u32 {
         self.tallies.iter().map(|tally| tally.runs).sum()
     }
 
-    /// How many key presses that the page was told of were lost.
+    /// Returns how many key presses that the page was told of were lost.
     pub fn lost(&self) -> usize {
         self.tallies.iter().map(|tally| tally.lost).sum()
     }
@@ -233,7 +233,7 @@ impl Page {
     }
 }
 
-/// How many characters of `expected` are not in `found` at their place.
+/// Returns how many characters of `expected` are not in `found` at their place.
 pub(crate) fn missing(expected: &str, found: &str) -> usize {
     let same = expected.bytes().zip(found.bytes()).take_while(|(left, right)| left == right).count();
     expected.len() - same

@@ -65,8 +65,8 @@ impl Record {
         self.folder.join("checked")
     }
 
-    /// Whether the documentation was found sound with these arguments after the crate and its libraries were built.
-    /// Cargo builds a library again when any of its sources changes.
+    /// Returns whether the documentation was found sound with these arguments after the crate and its libraries were
+    /// built. Cargo builds a library again when any of its sources changes.
     fn is_current(&self, arguments: &[OsString]) -> bool {
         let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
         let is_older = |library: &OsStr, than: SystemTime| {

@@ -73,7 +73,7 @@ impl Deaths {
     pub const HEADING: &str = "| browser killed | kills | key presses | lost | kills that lost some | pressed more than 100 ms \
         before the kill | median age | greatest age |\n|---|---|---|---|---|---|---|---|";
 
-    /// How many of the lost keys were pressed so long before the kill that they must be kept.
+    /// Returns how many of the lost keys were pressed so long before the kill that they must be kept.
     pub fn inexcusable(&self) -> usize {
         self.lost_ages.iter().filter(|&&age| age > TOLERATED).count()
     }

@@ -229,7 +229,7 @@ fn read_request(connection: &mut TcpStream) -> io::Result<Option<Request>> {
     Err(io::Error::other("the head of the request is too long"))
 }
 
-/// Whether a `Host` header, with or without a port, names this machine to itself.
+/// Returns whether a `Host` header, with or without a port, names this machine to itself.
 fn is_own_name(host: &str) -> bool {
     let name = host.rsplit_once(':').filter(|(_, port)| port.bytes().all(|it| it.is_ascii_digit()));
     matches!(name.map_or(host, |(name, _)| name), "127.0.0.1" | "localhost" | "[::1]")

@@ -35,7 +35,7 @@ impl Flavour {
         }
     }
 
-    /// Where the site of this flavour is assembled.
+    /// Returns where the site of this flavour is assembled.
     pub fn folder(self) -> PathBuf {
         target_dir().join("site").join(match self {
             Self::Development => "development",

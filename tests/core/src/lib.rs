@@ -47,7 +47,7 @@ impl Answers {
     }
 }
 
-/// What a core that starts from nothing answers about a text.
+/// Returns what a core that starts from nothing answers about a text.
 pub fn answers(source: &str) -> Answers {
     let mut answers = Answers::default();
     Core::default().handle(Request::Update(Update::new(1, source)), &mut answers);

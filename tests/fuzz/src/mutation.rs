@@ -247,7 +247,7 @@ fn group(random: &mut Random, bytes: &mut Vec<u8>, pool: &[Vec<u8>]) {
     }
 }
 
-/// Where brackets open and close in turn. What is in quotes counts as anything else: inputs need not be sound.
+/// Returns where brackets open and close in turn. What is in quotes counts as anything else: inputs need not be sound.
 fn groups_of(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let mut open: Vec<usize> = Vec::new();
     let mut groups = Vec::new();

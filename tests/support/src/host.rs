@@ -101,7 +101,7 @@ impl World {
         });
     }
 
-    /// What was saved last, which is a text.
+    /// Returns what was saved last, which is a text.
     pub fn saved_text(&self) -> String {
         let saved = self.saved.borrow();
         String::from_utf8(saved.last().expect("something was saved").1.clone()).expect("a text")

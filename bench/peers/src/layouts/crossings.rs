@@ -66,7 +66,7 @@ impl Grid {
     }
 }
 
-/// Whether two segments cross, not counting where one ends on the other.
+/// Returns whether two segments cross, not counting where one ends on the other.
 fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
     let side = |from: [f64; 2], to: [f64; 2], point: [f64; 2]| {
         let (along, beside) = ([to[0] - from[0], to[1] - from[1]], [point[0] - from[0], point[1] - from[1]]);

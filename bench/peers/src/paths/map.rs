@@ -65,7 +65,7 @@ impl Map {
         inside(column) && inside(row) && self.occupied[row as usize * SIZE + column as usize]
     }
 
-    /// Whether a path passes through the inside of an occupied cell, by more than a millionth of it.
+    /// Returns whether a path passes through the inside of an occupied cell, by more than a millionth of it.
     pub(crate) fn cuts(&self, path: &[[f64; 2]]) -> bool {
         path.windows(2).any(|ends| self.segment_cuts(ends[0], ends[1]))
     }
@@ -135,7 +135,7 @@ impl Map {
     }
 }
 
-/// Whether a segment passes through the inside of the unit square whose lower left corner is given.
+/// Returns whether a segment passes through the inside of the unit square whose lower left corner is given.
 fn passes(a: [f64; 2], b: [f64; 2], low: [f64; 2]) -> bool {
     const INSET: f64 = 1e-6;
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);

@@ -170,8 +170,8 @@ fn ours(map: &Map, planner: PlannerKind, seed: u64) -> Run {
     }
 }
 
-/// What a mission does for a leg of a traverse, with this comparison's step: all of it, shortening too, counts as the
-/// time of the path.
+/// Returns what a mission does for a leg of a traverse, with this comparison's step: all of it, shortening too, counts
+/// as the time of the path.
 fn best_of_two(map: &Map, seed: u64) -> Run {
     let query = Query { start_m: ENDS[0].into(), goal_m: ENDS[1].into() };
     let settings = Settings { step_m: 20.0, seed, ..Settings::of(PlannerKind::RrtConnect) };

@@ -146,7 +146,7 @@ impl Instance {
     }
 }
 
-/// Whether the arcs alone put `first` before `second`; touching is enough, unless it is a point.
+/// Returns whether the arcs alone put `first` before `second`; touching is enough, unless it is a point.
 fn is_ordered(network: &Network, first: &Label, second: &Label) -> bool {
     let arc = &network.arcs[first.arc.index()];
     if arc.upper == Bound::Finite(Time::ZERO) {
@@ -242,7 +242,7 @@ impl Contexts {
         self.ancestors(a).into_iter().find(|context| line.contains(context)).unwrap_or(0)
     }
 
-    /// Whether the two belong to different alternatives of one decision.
+    /// Returns whether the two belong to different alternatives of one decision.
     fn exclude(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.ancestors(a), self.ancestors(b));
         a.iter().any(|&one| {

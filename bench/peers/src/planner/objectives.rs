@@ -153,7 +153,7 @@ fn stops_text(vehicles: usize, stops: usize) -> String {
     format!("{text}objective minimize end;\nscenario Tour[0,99999] = {{ {visits} }}\n")
 }
 
-/// How long each movement takes from each place, which is numbered in its name.
+/// Returns how long each movement takes from each place, which is numbered in its name.
 fn departures(network: &Network, distances: &[Vec<i64>]) -> Vec<Departure> {
     let number = |place: &str| place.strip_prefix('S').and_then(|number| number.parse::<usize>().ok());
     let mut departures = Vec::new();

@@ -90,7 +90,7 @@ fn timed(network: &Network) -> (kirk::Outcome, Duration) {
     (outcome, start.elapsed())
 }
 
-/// What a script answers, a line for each file.
+/// Returns what a script answers, a line for each file.
 pub(super) fn of_python(tools: &mut Tools, script: &str, files: &[PathBuf]) -> Result<Vec<Answer>, String> {
     let mut command = Command::new(tools.python()?);
     command.arg(source_path(script)).arg(LIMIT.as_secs().to_string());

@@ -24,7 +24,7 @@ const LEAVES: [&str; 15] = [
     "searchbox",
 ];
 
-/// Whether what is inside an element of this role has to stand behind it instead.
+/// Returns whether what is inside an element of this role has to stand behind it instead.
 pub(super) fn is_leaf(role: &str) -> bool {
     LEAVES.contains(&role)
 }

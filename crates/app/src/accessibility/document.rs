@@ -150,7 +150,7 @@ impl Document {
         self.focus
     }
 
-    /// How this differs from an earlier document; `None` if it does not.
+    /// Returns how this differs from an earlier document; `None` if it does not.
     pub(super) fn change_since(&self, earlier: &Self) -> Option<Change> {
         if self == earlier {
             return None;

@@ -204,7 +204,7 @@ fn nothing_of_a_lesson_is_wider_than_its_panel() {
     }
 }
 
-/// Where the lesson's panel ends: the button at its right edge is there at every stop.
+/// Returns where the lesson's panel ends: the button at its right edge is there at every stop.
 fn panel_right(app: &App) -> f64 {
     let button = app.harness.get_by_role_and_label(Role::Button, "Reset text");
     f64::from(button.rect().right()) + 14.0
@@ -317,7 +317,7 @@ const COUNTED: [&str; 18] = [
     "warnings",
 ];
 
-/// Whether a text says “1 decisions”, or has code in raw backticks.
+/// Returns whether a text says “1 decisions”, or has code in raw backticks.
 fn is_badly_put(text: &str) -> bool {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_wrong =

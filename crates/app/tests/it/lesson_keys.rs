@@ -74,7 +74,7 @@ fn question(app: &App) -> Value {
     app.json()["lesson"]["open"]["question"].clone()
 }
 
-/// What the live region says.
+/// Returns what the live region says.
 fn announced(app: &App) -> String {
     workbench::host_io::announcement(app.harness.state().app_state())
 }
@@ -125,7 +125,7 @@ fn predict(app: &mut App) {
     panic!("the predictions do not end");
 }
 
-/// What takes input and has no name.
+/// Returns what takes input and has no name.
 fn nameless(app: &App) -> Vec<String> {
     let nodes = app.harness.root().children_recursive();
     let found = nodes.map(|node| node.accesskit_node()).filter(|node| {

@@ -178,7 +178,7 @@ fn a_text_of_ten_thousand_lines_lays_out_only_what_is_seen() {
     assert!((10..120).contains(&lines), "{lines} lines of text are painted");
 }
 
-/// Whether a shape is a line of the long text.
+/// Returns whether a shape is a line of the long text.
 fn is_line(shape: &egui::Shape) -> bool {
     match shape {
         egui::Shape::Text(text) => text.galley.text().contains("Step-"),

@@ -523,7 +523,7 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
     app.harness.get_by_label("The plans are identical");
 }
 
-/// What is written on the drawings, which no role tells.
+/// Returns what is written on the drawings, which no role tells.
 fn painted(app: &App) -> Vec<String> {
     fn collect(shape: &egui::Shape, found: &mut Vec<String>) {
         match shape {

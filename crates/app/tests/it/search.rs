@@ -45,7 +45,7 @@ fn dispatch(app: &mut App, command: &str, arguments: &serde_json::Value) {
     app.settle();
 }
 
-/// Where the search tree is drawn.
+/// Returns where the search tree is drawn.
 fn tree(app: &App) -> Rect {
     let is_tree = |node: &egui_kittest::kittest::AccessKitNode<'_>| {
         node.label().is_some_and(|label| label.contains("search tree of"))

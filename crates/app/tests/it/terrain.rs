@@ -43,7 +43,7 @@ fn dispatch(app: &mut support::App, command: &str, arguments: &serde_json::Value
     app.settle();
 }
 
-/// Where a place is in the window. From straight above, a name stands right over the place it names.
+/// Returns where a place is in the window. From straight above, a name stands right over the place it names.
 fn place(app: &support::App, name: &str) -> Pos2 {
     let plate = app.harness.get_by_label(&format!("{name} on the map")).rect();
     plate.center_bottom() + vec2(0.0, 3.0)

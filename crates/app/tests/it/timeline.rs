@@ -21,7 +21,7 @@ fn reviewing() -> support::App {
     app
 }
 
-/// Where the handle of an event is; the bar it belongs to is selected first, as a user would find it.
+/// Returns where the handle of an event is; the bar it belongs to is selected first, as a user would find it.
 fn handle(app: &support::App, event: &str) -> Pos2 {
     let label = format!("Move {event} on the timeline");
     app.harness.get_by_label(&label).rect().center()
@@ -248,7 +248,7 @@ fn generated(nodes: usize) -> support::App {
     app
 }
 
-/// Where the timeline ends in the workspace for reviews: the network is below it.
+/// Returns where the timeline ends in the workspace for reviews: the network is below it.
 fn bottom(app: &support::App) -> f32 {
     app.harness.get_by_label("Close Network").rect().top()
 }

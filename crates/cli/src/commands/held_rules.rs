@@ -38,7 +38,7 @@ impl HeldRules {
         Self { plans }
     }
 
-    /// Whether no one has to look at any of them in any plan.
+    /// Returns whether no one has to look at any of them in any plan.
     pub fn are_kept(&self) -> bool {
         self.plans.iter().flatten().all(|held| held.line.status <= Status::Passed)
     }
@@ -58,7 +58,8 @@ impl HeldRules {
         text
     }
 
-    /// What was found of each rule in the plan that keeps it the least, for other programs: `plan` is its number, from 1.
+    /// Returns what was found of each rule in the plan that keeps it the least, for other programs: `plan` is its
+    /// number, from 1.
     pub fn worst_json(&self) -> Value {
         let Some(first) = self.plans.first() else { return json!([]) };
         let worst = (0..first.len()).filter_map(|rule| {
@@ -77,7 +78,7 @@ impl HeldRules {
         told.collect()
     }
 
-    /// What was found of each rule in each plan, in the order of the plans.
+    /// Returns what was found of each rule in each plan, in the order of the plans.
     pub fn by_plan_json(&self) -> Value {
         self.plans.iter().map(|held| held.iter().map(Held::json).collect::<Value>()).collect()
     }

@@ -218,7 +218,7 @@ fn words(found: &Found<'_>) -> String {
     out
 }
 
-/// Who set rules, and when.
+/// Returns who set rules, and when.
 fn set_by(entries: &[&Entry]) -> String {
     if entries.is_empty() {
         return "default, no one has set any".to_owned();

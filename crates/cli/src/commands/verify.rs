@@ -78,8 +78,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(if is_valid { YES } else { NO }))
 }
 
-/// What is wrong with one plan. What it says of things that the network does not have is wrong with it; a document
-/// that is not a plan at all is an error of the call.
+/// Returns what is wrong with one plan. What it says of things that the network does not have is wrong with it; a
+/// document that is not a plan at all is an error of the call.
 fn check(
     args: &Args,
     mission: &mut Opened,
@@ -116,21 +116,21 @@ fn check(
     Ok(violations)
 }
 
-/// Whether the plan has windows of path vertices, which are not in the network of the text alone.
+/// Returns whether the plan has windows of path vertices, which are not in the network of the text alone.
 fn names_path_vertices(stated: &Value) -> bool {
     let windows = stated.get("windows").and_then(Value::as_object);
     windows.is_some_and(|windows| windows.keys().any(|event| event.contains(".leg")))
 }
 
-/// Whether what the plan says of times may follow from paths without vertices: its mission moves vehicles, and without paths
-/// it is not valid.
+/// Returns whether what the plan says of times may follow from paths without vertices: its mission moves vehicles, and
+/// without paths it is not valid.
 fn drives(compiled: &Compiled, network: &Network, stated: &Value) -> bool {
     let moves = compiled.program.primitives.iter().any(|it| it.moves.is_some());
     let is_valid = |plan: tpn::Plan| verify::check_plan(network, &plan).valid;
     moves && !plan_from_json(network, stated).is_ok_and(is_valid)
 }
 
-/// Whether the plan has orders of traverses that would meet, which are not in the network of the text alone.
+/// Returns whether the plan has orders of traverses that would meet, which are not in the network of the text alone.
 fn orders_ways(stated: &Value) -> bool {
     let resources = stated.get("resources").and_then(Value::as_object);
     resources.is_some_and(|resources| resources.keys().any(|name| name.starts_with("way#")))

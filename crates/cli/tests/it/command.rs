@@ -23,7 +23,7 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What the command said beside its answer.
+/// Returns what the command said beside its answer.
 pub(crate) fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }

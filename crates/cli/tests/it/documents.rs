@@ -204,7 +204,7 @@ fn acknowledge(report: &Value, record: &mut Record, mut who: impl FnMut() -> (Se
     }
 }
 
-/// What is approved of the small mission.
+/// Returns what is approved of the small mission.
 fn small_subject(source: String, rules: FlightRules) -> Subject {
     Subject {
         source,
@@ -227,7 +227,7 @@ fn root() -> PathBuf {
 /// A mission of which nothing fails.
 const SMALL: &str = "tests/conformance/t08_sequence_windows.rmpl";
 
-/// What `enroute review verify` says of a history: its status, and the document.
+/// Returns what `enroute review verify` says of a history: its status, and the document.
 fn verified(arguments: &[&str]) -> (Option<i32>, Value) {
     let output = enroute(&[&["review", "verify", "--format", "json"], arguments].concat());
     (output.status.code(), serde_json::from_str(&written(&output)).expect("JSON"))

@@ -76,7 +76,7 @@ fn model_of(name: &str, text: &str, (interface, initial): (&str, &str)) -> Strin
     model
 }
 
-/// What is estimated after a step of a run with these observations.
+/// Returns what is estimated after a step of a run with these observations.
 fn estimate(model: &str, program: &str, step: usize, observed: &[&str]) -> Value {
     // Tests run at the same time, each with a model of its own.
     let program = file(&format!("{}-program.rmpl", model.rsplit('/').next().unwrap_or(model)), program);

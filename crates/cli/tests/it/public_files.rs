@@ -80,7 +80,7 @@ fn reason(line: &str, path: &Path) -> String {
     }
 }
 
-/// What was left out of a file, without the place and without what differs from file to file.
+/// Returns what was left out of a file, without the place and without what differs from file to file.
 fn without_names(line: &str) -> String {
     let what = line.split_once(": ").map_or(line, |(_, what)| what);
     what.split('`').enumerate().map(|(at, part)| if at % 2 == 0 { part } else { "`…`" }).collect()

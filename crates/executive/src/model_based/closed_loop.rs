@@ -249,17 +249,17 @@ impl ClosedLoop {
         self.plant.state()
     }
 
-    /// What the programs know of the plant.
+    /// Returns what the programs know of the plant.
     pub const fn knowledge(&self) -> Knowledge {
         self.knowledge
     }
 
-    /// What is believed; after a step that nothing explains, what was believed before.
+    /// Returns what is believed; after a step that nothing explains, what was believed before.
     pub const fn belief(&self) -> &FactoredBelief {
         &self.believed.belief
     }
 
-    /// What was observed in the last step.
+    /// Returns what was observed in the last step.
     pub(super) const fn observation(&self) -> &Observation {
         &self.observation
     }
@@ -328,7 +328,7 @@ impl ClosedLoop {
         })
     }
 
-    /// What the settled programs command from where they are.
+    /// Returns what the settled programs command from where they are.
     pub(super) fn command(
         &self,
         system: &System,

@@ -21,8 +21,8 @@ pub(super) struct Asker<'program> {
 }
 
 impl Asker<'_> {
-    /// What the plant has to make true for a constraint to hold, whatever the program's own variables are that it does not
-    /// set in this step.
+    /// Returns what the plant has to make true for a constraint to hold, whatever the program's own variables are that
+    /// it does not set in this step.
     pub(super) fn condition(mut self, constraint: &Constraint) -> Formula {
         let mut open = Vec::new();
         self.open_variables(constraint, &mut open);

@@ -85,7 +85,7 @@ impl Believed {
         Self::initial(self.belief.certain_of(&system.groups, state))
     }
 
-    /// What is believed before the first step.
+    /// Returns what is believed before the first step.
     fn initial(belief: FactoredBelief) -> Self {
         let histories = belief.beliefs().map(|belief| History { complete: Arc::clone(belief), since: None });
         Self { histories: histories.collect(), belief }
@@ -99,7 +99,7 @@ pub(super) struct Threshold<'asked> {
 }
 
 impl Threshold<'_> {
-    /// Whether what was dropped leaves open on which side of the threshold the condition is.
+    /// Returns whether what was dropped leaves open on which side of the threshold the condition is.
     fn is_open(&self, known: Known<'_>) -> bool {
         let probability = known.probability(self.condition);
         probability.low < *self.entailed_from && *self.entailed_from <= probability.high
@@ -173,7 +173,7 @@ impl Estimator {
         &self.planner
     }
 
-    /// What is believed before the first step.
+    /// Returns what is believed before the first step.
     pub(super) fn initial(&mut self) -> Believed {
         let belief =
             self.initial.get_or_insert_with(|| FactoredBelief::initial(&self.groups, self.most_states));
@@ -312,8 +312,8 @@ impl Estimator {
         })
     }
 
-    /// What is left of the observations when they are left out in the order of the text, as long as one of the groups that
-    /// are `refuted`, from the beliefs given, stays so.
+    /// Returns what is left of the observations when they are left out in the order of the text, as long as one of the
+    /// groups that are `refuted`, from the beliefs given, stays so.
     fn unexplained(
         &mut self,
         mut refuted: BTreeMap<usize, Arc<Belief>>,

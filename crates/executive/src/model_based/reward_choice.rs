@@ -195,7 +195,8 @@ impl Work<'_> {
         }
     }
 
-    /// What comes next where the program is, with the plant in a state: its open choices are followed in their order.
+    /// Returns what comes next where the program is, with the plant in a state: its open choices are followed in their
+    /// order.
     fn open(&mut self, state: &State) -> Next {
         if let Some(choice) = self.program.stepper.open_choice().cloned() {
             let standing = self.program.stepper.standing();
@@ -253,7 +254,7 @@ impl Work<'_> {
         reached
     }
 
-    /// Where the next step from a place leads.
+    /// Returns where the next step from a place leads.
     fn follow(&mut self, number: usize) -> Result<Arc<Vec<Way>>, TooMany> {
         let place = &self.chooser.places[number];
         if let Some(ways) = &place.ways {
@@ -320,7 +321,7 @@ impl Work<'_> {
         }
     }
 
-    /// What may be observed in a state, with probabilities, if some conditions depend on it.
+    /// Returns what may be observed in a state, with probabilities, if some conditions depend on it.
     fn observed<'asked>(
         &self,
         state: &State,

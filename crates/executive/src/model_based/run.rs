@@ -134,7 +134,7 @@ impl Run {
         self.records.iter().map(|record| record.input.clone()).collect()
     }
 
-    /// What happened so far, one record per step.
+    /// Returns what happened so far, one record per step.
     pub fn records(&self) -> &[StepRecord] {
         &self.records
     }
@@ -149,12 +149,13 @@ impl Run {
         self.closed.belief()
     }
 
-    /// What was believed before a step, from 0.
+    /// Returns what was believed before a step, from 0.
     pub fn belief_before(&self, step: usize) -> Option<&FactoredBelief> {
         self.before.get(step).map(|before| before.closed.belief())
     }
 
-    /// How what was believed before a step, from 0, became what is believed after it; `None` if there is no such step.
+    /// Returns how what was believed before a step, from 0, became what is believed after it; `None` if there is no
+    /// such step.
     pub fn branches(&self, step: usize) -> Option<StepBranches> {
         let record = self.records.get(step)?;
         let after = (record.outcome == StepOutcome::Explained).then_some(&record.belief);
@@ -167,12 +168,12 @@ impl Run {
         self.closed.true_state()
     }
 
-    /// Whether the program has ended.
+    /// Returns whether the program has ended.
     pub fn is_done(&self) -> bool {
         self.program.stepper.is_done()
     }
 
-    /// How far the run is.
+    /// Returns how far the run is.
     pub fn status(&self) -> RunStatus {
         match self.closed.outcome() {
             StepOutcome::Refuted { .. } => RunStatus::Refuted,
@@ -194,7 +195,7 @@ impl Run {
         rewards.fold(Rational::ZERO, |sum, reward| sum.checked_add(reward).unwrap_or(sum))
     }
 
-    /// Whether time alone may change what happens next.
+    /// Returns whether time alone may change what happens next.
     pub fn depends_on_time(&self) -> bool {
         self.program.stepper.depends_on_time()
     }
@@ -252,7 +253,7 @@ impl Run {
         Ok(&self.records[self.records.len() - 1])
     }
 
-    /// What the run has found out about its plant, for another run.
+    /// Returns what the run has found out about its plant, for another run.
     pub fn into_estimator(self) -> Estimator {
         self.estimator
     }

@@ -159,8 +159,8 @@ impl System {
         bind(&file, plant)
     }
 
-    /// What the plant has to make true for a condition of the automaton to hold, where the program's own variables have
-    /// these values.
+    /// Returns what the plant has to make true for a condition of the automaton to hold, where the program's own
+    /// variables have these values.
     pub(super) fn condition(&self, test: TestId, settings: Vec<(ProgramVariableId, u32)>) -> Formula {
         let asker =
             Asker { automaton: &self.automaton, model: &self.model, bindings: &self.bindings, settings };

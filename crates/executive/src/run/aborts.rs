@@ -91,7 +91,7 @@ impl Run<'_> {
         Ok(Retreat::Impossible(hindrance))
     }
 
-    /// How long ending an activity early takes, if that can be done.
+    /// Returns how long ending an activity early takes, if that can be done.
     fn abort_time(&self, id: OccurrenceId) -> Option<Time> {
         let occurrence = &self.stage.network.occurrences[id.index()];
         occurrence.aborts.map(|range| self.world.abort_time(occurrence, range))
@@ -247,7 +247,8 @@ impl Run<'_> {
     }
 }
 
-/// Why a run is stopped, in one sentence: what was needed, and what cannot be given up, or why there is no plan.
+/// Returns why a run is stopped, in one sentence: what was needed, and what cannot be given up, or why there is no
+/// plan.
 pub(super) fn stopped_for(need: Option<&str>, no_plan: &str, hindrance: Option<&str>) -> String {
     match (need, hindrance) {
         (Some(need), Some(hindrance)) => format!("{need}: {hindrance}"),

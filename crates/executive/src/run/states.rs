@@ -70,8 +70,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What happens to an event's states and levels is written down, and what is required just then is looked at. An effect
-    /// on what is read from the plant is what the plant is estimated to be (SPEC 15).
+    /// Returns what happens to an event's states and levels is written down, and what is required just then is looked
+    /// at. An effect on what is read from the plant is what the plant is estimated to be (SPEC 15).
     pub(super) fn change_states(&mut self, node: NodeId) -> Option<Violation> {
         let stage = &self.stage;
         let happenings = self.state.happen(&stage.network, &stage.effects, node);
@@ -157,7 +157,7 @@ impl Run<'_> {
         Ok(self.lost_requirement(variable, value))
     }
 
-    /// What is not as it must be when the present instant is over.
+    /// Returns what is not as it must be when the present instant is over.
     fn lack(&self) -> Option<Violation> {
         let network = &self.stage.network;
         let lack = self.state.lack(network)?;
@@ -197,7 +197,7 @@ impl Run<'_> {
         Some(Violation::new(name, reason, News::None))
     }
 
-    /// Who a requirement belongs to.
+    /// Returns who a requirement belongs to.
     fn needing(&self, label: tpn::LabelId) -> String {
         let network = &self.stage.network;
         let owner = network.labels[label.index()].owner;
@@ -207,7 +207,7 @@ impl Run<'_> {
         )
     }
 
-    /// Who uses a resource, or asks for its level.
+    /// Returns who uses a resource, or asks for its level.
     fn user(&self, used: UseId) -> String {
         let network = &self.stage.network;
         let owner = network.uses[used.index()].owner;
@@ -307,8 +307,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What relied on the value that a variable had, if something did: the first such requirement that still continues,
-    /// or is to come.
+    /// Returns what relied on the value that a variable had, if something did: the first such requirement that still
+    /// continues, or is to come.
     fn lost_requirement(&self, variable: VariableId, value: ValueId) -> Option<Violation> {
         let (network, effects) = (&self.stage.network, &self.stage.effects);
         let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
@@ -444,8 +444,8 @@ impl Run<'_> {
         self.stage.effects.conditions.iter().find(is_lost).copied()
     }
 
-    /// What counts of what is to come when one use happens, where as much of its own kind has happened as may, and of the other
-    /// kind what must.
+    /// Returns what counts of what is to come when one use happens, where as much of its own kind has happened as may,
+    /// and of the other kind what must.
     fn worst_before<'c>(
         &'c self,
         coming: &'c [(Time, UseId)],
@@ -509,7 +509,7 @@ impl Run<'_> {
         Violation::new(self.stage.name(node).into(), reason, News::None)
     }
 
-    /// Whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.
+    /// Returns whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.
     fn keeps_range(
         &self,
         resource: ResourceId,
@@ -540,7 +540,7 @@ impl Run<'_> {
         Some([now, most])
     }
 
-    /// Where the level first leaves its range if all that is to come comes as early as it may.
+    /// Returns where the level first leaves its range if all that is to come comes as early as it may.
     fn first_out_of_range(
         &self,
         resource: ResourceId,
@@ -581,7 +581,7 @@ fn named(network: &Network, variable: &str, value: &str) -> Option<(VariableId, 
     Some((VariableId::from_index(index), ValueId::from_index(known)))
 }
 
-/// How far a traverse has driven, in words for the cause of a violation.
+/// Returns how far a traverse has driven, in words for the cause of a violation.
 fn driven(network: &Network, occurrence: OccurrenceId, extra_m: Rational) -> String {
     format!(
         "{} has driven {} m {} than its path",

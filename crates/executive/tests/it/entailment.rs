@@ -21,7 +21,7 @@ fn steps(run: &mut Run, count: usize) {
     }
 }
 
-/// What is asserted after one step, and what was asked for in it.
+/// Returns what is asserted after one step, and what was asked for in it.
 fn after_one(option: &str, program: &str, plant: &str) -> (Vec<String>, Vec<String>) {
     let mut run = Run::new(&system(&format!("{option} {program} {LAMP} {plant}")), Options::default());
     steps(&mut run, 1);

@@ -265,7 +265,7 @@ fn what_follows_an_activity_at_once_waits_for_the_report_of_its_end() {
     assert!(verdict.valid, "{:?}", verdict.violations);
 }
 
-/// What is withdrawn leaves one way under way and another one that opens later (SPEC 15).
+/// Returns what is withdrawn leaves one way under way and another one that opens later (SPEC 15).
 fn two_ways(clause: &str) -> Arc<Network> {
     compiled(&format!(
         "primitive Walk(way)[20,40]{clause};

@@ -77,7 +77,7 @@ fn changes(outcome: &RunOutcome) -> Vec<String> {
     outcome.log.iter().filter_map(change).collect()
 }
 
-/// What happened to states and levels: `5 ARM=OUT by Deploy#1`.
+/// Returns what happened to states and levels: `5 ARM=OUT by Deploy#1`.
 fn record(outcome: &RunOutcome) -> Vec<String> {
     let words = |entry: &executive::Entry| {
         Some(format!("{} {}", entry.time.readable(), entry.happening.state_words()?))

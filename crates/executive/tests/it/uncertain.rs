@@ -59,7 +59,7 @@ fn leave_to_nature(network: &mut Network, rng: &mut Rng) {
     }
 }
 
-/// Whether the plan takes a duration that the environment really chooses.
+/// Returns whether the plan takes a duration that the environment really chooses.
 fn is_uncertain(network: &Network, plan: &Plan) -> bool {
     network
         .arcs
@@ -74,7 +74,7 @@ fn half() -> Time {
     Time::ONE.checked_div(HALF).expect("a half")
 }
 
-/// What the environment chooses: anything by halves, or an end of each range.
+/// Returns what the environment chooses: anything by halves, or an end of each range.
 fn choose(network: &Network, rng: &mut Rng, only_ends: bool) -> BTreeMap<SmolStr, Time> {
     let mut chosen = BTreeMap::new();
     for (occurrence, [lower, upper]) in natures_ranges(network) {
@@ -137,7 +137,7 @@ fn controllable_plans_never_fail_in_ten_thousand_runs() {
     assert!(plans > 100, "{plans} plans");
 }
 
-/// Whether the plan selects the duration of an occurrence.
+/// Returns whether the plan selects the duration of an occurrence.
 fn is_of(_: &Network, plan: &Plan, occurrence: &tpn::Occurrence) -> bool {
     occurrence.arc.is_some_and(|arc| plan.selected_arcs[arc.index()])
 }

@@ -57,7 +57,7 @@ impl<'tree> Running<'tree> {
         idle
     }
 
-    /// How many steps a duration takes here.
+    /// Returns how many steps a duration takes here.
     fn steps(&self, written: &str) -> u64 {
         let (step_millis, (over, under)) = self.scale;
         let end = written.find(|c: char| c.is_alphabetic() || c == ' ').unwrap_or(written.len());
@@ -109,12 +109,12 @@ impl<'tree> Running<'tree> {
         (rewards, best)
     }
 
-    /// What all alternatives that completed count.
+    /// Returns what all alternatives that completed count.
     fn all_earned(&self) -> i64 {
         self.earned + self.parts.iter().map(Self::all_earned).sum::<i64>()
     }
 
-    /// What marked rewards count.
+    /// Returns what marked rewards count.
     fn marked_rewards(&self) -> i64 {
         let own = match &self.form.kind {
             ExpressionKind::Reward(reward) if self.marked => reward.text.parse().expect("a whole reward"),

@@ -42,7 +42,7 @@ fn visible(ring: &[Point2<f64>], hole: &[Point2<f64>], others: &[Ring]) -> Optio
     corners.into_iter().take(TRIED).map(|(_, outer)| outer).find(is_free)
 }
 
-/// Whether a line crosses a side of a ring other than at the line's own ends.
+/// Returns whether a line crosses a side of a ring other than at the line's own ends.
 fn crosses(from: Point2<f64>, to: Point2<f64>, ring: &[Point2<f64>]) -> bool {
     let turn = |a: Point2<f64>, b: Point2<f64>, c: Point2<f64>| (b - a).perp(&(c - a));
     ring.iter().zip(ring.iter().cycle().skip(1)).any(|(&a, &b)| {

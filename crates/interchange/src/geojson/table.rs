@@ -10,7 +10,7 @@ const DEGREES: [&str; 2] = ["lon", "lat"];
 /// Columns of texts, and the properties that they become.
 const TEXTS: [(&str, &str); 3] = [("name", "name"), ("model", "enroute_model"), ("group", "enroute_group")];
 
-/// Whether a file is a table, by its name.
+/// Returns whether a file is a table, by its name.
 pub fn is_table(name: &str) -> bool {
     name.to_ascii_lowercase().ends_with(".csv")
 }

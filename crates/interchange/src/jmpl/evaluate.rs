@@ -111,7 +111,7 @@ impl<'file> Names<'file> {
         }
     }
 
-    /// Whether an attribute is a variable of the state vector.
+    /// Returns whether an attribute is a variable of the state vector.
     pub(super) fn is_state(&self, class: &'file Class, attribute: &str) -> bool {
         self.lineage(class).into_iter().any(|class| class.state.iter().any(|name| name == attribute))
     }
@@ -197,7 +197,7 @@ impl<'file> Evaluator<'file> {
         }
     }
 
-    /// Whether all constraints together are larger than is read.
+    /// Returns whether all constraints together are larger than is read.
     pub(super) const fn is_too_large(&self) -> bool {
         self.parts > MAX_PARTS
     }
@@ -300,7 +300,7 @@ impl<'file> Evaluator<'file> {
         }
     }
 
-    /// What a path represents: `None` if it is a single name that nothing has.
+    /// Returns what a path represents: `None` if it is a single name that nothing has.
     fn value(&self, path: &[String], scope: &Scope<'file>) -> Result<Option<Value<'file>>, String> {
         let Some((first, rest)) = path.split_first() else { return Ok(None) };
         let start = if first == "this" {

@@ -14,7 +14,7 @@ pub(super) struct Harness {
     pub(super) has_interface: bool,
 }
 
-/// Whether a text is one of these files rather than JMPL.
+/// Returns whether a text is one of these files rather than JMPL.
 pub(super) fn is_harness(text: &str) -> bool {
     ["<xmpl", "<mplHarness", "<mplInit"].iter().any(|tag| text.contains(tag))
 }

@@ -23,7 +23,7 @@ pub struct SourceFile {
     pub text: String,
 }
 
-/// Whether a file is JMPL, or one of the files beside it, by the end of its name.
+/// Returns whether a file is JMPL, or one of the files beside it, by the end of its name.
 pub fn is_jmpl(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     [".jmpl", ".hrn", ".ini"].iter().any(|end| name.ends_with(end))

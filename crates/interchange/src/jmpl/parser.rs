@@ -142,7 +142,7 @@ impl Parser<'_> {
         Ok((Enum { name, values, numbers, relations }, variables))
     }
 
-    /// Whether the word that follows is a variable of an enumeration, and not the start of something else.
+    /// Returns whether the word that follows is a variable of an enumeration, and not the start of something else.
     fn tokens_follow_a_variable(&self) -> bool {
         let next = self.tokens.get(self.at + 1).map(|(token, _)| token);
         matches!(next, Some(Token::Sign(',' | ';' | '{')))

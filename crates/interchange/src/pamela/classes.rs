@@ -22,7 +22,7 @@ pub(super) struct Class<'file> {
 }
 
 impl Class<'_> {
-    /// Whether it only has names for values, and is not an object.
+    /// Returns whether it only has names for values, and is not an object.
     pub(super) fn is_enumeration(&self) -> bool {
         self.methods.is_empty() && self.fields.is_empty() && self.transitions.is_empty()
     }

@@ -132,7 +132,7 @@ impl<'file> Instances<'file> {
         }
     }
 
-    /// What names joined by points are for an object.
+    /// Returns what names joined by points are for an object.
     pub(super) fn resolve(&self, at: usize, path: &str) -> Option<Reference<'file>> {
         let mut names = path.split('.');
         let first = names.next()?;

@@ -22,7 +22,7 @@ pub struct PamelaError {
     pub what: String,
 }
 
-/// Whether a file is Pamela, by the end of its name.
+/// Returns whether a file is Pamela, by the end of its name.
 pub fn is_pamela(name: &str) -> bool {
     name.to_ascii_lowercase().ends_with(".pamela")
 }

@@ -151,8 +151,8 @@ impl<'file> Writer<'file> {
         text + ")\n"
     }
 
-    /// What changes a mode on command: methods, and transitions that nothing else causes. Each with its name, the modes that it
-    /// leaves and enters, and its condition.
+    /// Returns what changes a mode on command: methods, and transitions that nothing else causes. Each with its name,
+    /// the modes that it leaves and enters, and its condition.
     fn commands(
         &mut self,
         class: &'file Class<'file>,
@@ -423,7 +423,7 @@ fn ends<'file>(
     Some((from, to))
 }
 
-/// Whether a method of a class leads from one mode to another.
+/// Returns whether a method of a class leads from one mode to another.
 fn is_commanded(class: &Class<'_>, from: &str, to: &str) -> bool {
     class.methods.iter().any(|method| {
         let mode = |key: &str| method.options.get(key).and_then(|condition| own_mode(condition));

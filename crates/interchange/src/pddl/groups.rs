@@ -72,7 +72,7 @@ impl Groups {
         self.of.get(&atom).copied()
     }
 
-    /// Whether conditions want two atoms of one group.
+    /// Returns whether conditions want two atoms of one group.
     pub(super) fn exclude(&self, conditions: &Conditions) -> bool {
         let mut wanted = BTreeSet::new();
         let true_ones = conditions.literals.iter().filter(|(_, value)| **value).map(|(atom, _)| *atom);
@@ -101,7 +101,7 @@ fn is_group(ground: &Ground, atoms: &BTreeSet<Atom>) -> bool {
         && ground.actions.iter().all(|action| keeps(action, atoms))
 }
 
-/// Whether an action leaves at most one of the atoms true.
+/// Returns whether an action leaves at most one of the atoms true.
 fn keeps(action: &Action, atoms: &BTreeSet<Atom>) -> bool {
     let set = |snap: &Snap, wanted: bool| -> Vec<Atom> {
         let of_group = snap.sets.iter().filter(|(atom, value)| atoms.contains(atom) && **value == wanted);

@@ -243,7 +243,7 @@ impl<'ground> Writer<'ground> {
         Ok(Some(format!("{name}()")))
     }
 
-    /// What a snap needs and changes.
+    /// Returns what a snap needs and changes.
     fn clauses(
         &mut self,
         snap: &Snap,
@@ -314,7 +314,7 @@ impl<'ground> Writer<'ground> {
         Ok(clause("consumes", &amounts) + &clause("produces", &amounts))
     }
 
-    /// What an action adds to what is minimized.
+    /// Returns what an action adds to what is minimized.
     fn worth(&mut self, action: &Action) -> Result<String, PddlError> {
         let Some(metric) = &self.ground.metric else { return Ok(String::new()) };
         let mut worth = Rational::default();

@@ -18,7 +18,7 @@ pub use error::PddlError;
 pub use mission::{MAX_TIMES, Translation};
 pub use names::{EPSILON, NamedAction, body_of, named_action};
 
-/// Whether a text is PDDL: it begins with `(define`.
+/// Returns whether a text is PDDL: it begins with `(define`.
 pub fn is_pddl(text: &str) -> bool {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows = text.lines().map(|row| row.split(';').next().unwrap_or_default().trim());

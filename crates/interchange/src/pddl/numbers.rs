@@ -134,7 +134,7 @@ fn range(ground: &Ground, fluent: Fluent, times: u32) -> Result<Range, PddlError
 }
 
 impl Range {
-    /// How much of a reservoir conditions reserve.
+    /// Returns how much of a reservoir conditions reserve.
     pub(super) fn reserved(
         &self,
         fluent: Fluent,
@@ -152,7 +152,7 @@ impl Range {
         Ok(most)
     }
 
-    /// What a snap takes and gives, of what is not reserved already.
+    /// Returns what a snap takes and gives, of what is not reserved already.
     pub(super) fn exchange(
         &self,
         fluent: Fluent,

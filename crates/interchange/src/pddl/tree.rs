@@ -73,7 +73,7 @@ impl Tree {
         }
     }
 
-    /// Whether it is `()`.
+    /// Returns whether it is `()`.
     pub(super) fn is_empty(&self) -> bool {
         self.list().is_some_and(<[Self]>::is_empty)
     }

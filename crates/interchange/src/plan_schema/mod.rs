@@ -82,8 +82,8 @@ impl Document {
         read::read(objects)
     }
 
-    /// What the file says and planning does not honor, in words, each with how often: costs and rewards, durations that
-    /// are not the executive's to choose, guards, probabilities, and kinds of object that are not known.
+    /// Returns what the file says and planning does not honor, in words, each with how often: costs and rewards,
+    /// durations that are not the executive's to choose, guards, probabilities, and kinds of object that are not known.
     pub fn not_honored(&self) -> Vec<String> {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for object in self.objects.values().filter(|object| object.is_object()) {
@@ -101,7 +101,7 @@ impl Document {
     }
 }
 
-/// What one object says that planning does not honor.
+/// Returns what one object says that planning does not honor.
 fn said_in_vain(object: &Value) -> Vec<String> {
     const KNOWN: [&str; 11] = [
         "network",

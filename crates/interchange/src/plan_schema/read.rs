@@ -138,7 +138,8 @@ impl<'file> Reader<'file> {
         named.map(|(uid, _)| uid.clone()).ok_or_else(missing)
     }
 
-    /// What this program writes into the network object beside the standard keys: variables, and the threat gap.
+    /// Returns what this program writes into the network object beside the standard keys: variables, and the threat
+    /// gap.
     fn read_declarations(&mut self, network: &str) -> Result<Time, PlanSchemaError> {
         let object = self.object(network, network)?;
         if let Some(variables) = object.get("variables")
@@ -186,7 +187,7 @@ impl<'file> Reader<'file> {
         }
     }
 
-    /// Where arcs into a node lead.
+    /// Returns where arcs into a node lead.
     fn node_of(&self, uid: &str) -> NodeId {
         self.before.get(uid).or_else(|| self.ids.get(uid)).copied().unwrap_or(NodeId(0))
     }
@@ -520,7 +521,7 @@ fn link(network: &mut Network) {
     }
 }
 
-/// Whether bounds are a variable (`lvar`) of Pamela.
+/// Returns whether bounds are a variable (`lvar`) of Pamela.
 pub(super) fn is_variable(value: Option<&Value>) -> bool {
     value.and_then(|value| value.get("type")).and_then(Value::as_str) == Some("lvar")
 }

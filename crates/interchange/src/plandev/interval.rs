@@ -61,7 +61,7 @@ pub(super) fn minutes_of(text: &str) -> Option<Time> {
     Some(sum)
 }
 
-/// What follows the `P`.
+/// Returns what follows the `P`.
 fn iso_minutes(parts: &str) -> Option<Time> {
     let (days, clock) = parts.split_once('T').unwrap_or((parts, ""));
     if days.is_empty() && clock.is_empty() || parts.ends_with('T') {

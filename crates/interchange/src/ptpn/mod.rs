@@ -39,7 +39,7 @@ pub enum PtpnError {
     Network(#[from] crate::plan_schema::PlanSchemaError),
 }
 
-/// Whether a text is a pTPN: XML whose first element is one of it.
+/// Returns whether a text is a pTPN: XML whose first element is one of it.
 pub fn is_ptpn(text: &str) -> bool {
     let mut rest = text.strip_prefix('\u{feff}').unwrap_or(text).trim_start();
     while let Some(after) = ["<?", "<!--"].iter().find_map(|start| rest.strip_prefix(start)) {

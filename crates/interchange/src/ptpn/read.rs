@@ -216,7 +216,7 @@ impl Reader {
         Ok(edges)
     }
 
-    /// What each edge is: by its guard, and constraints by whether other edges lead the same way.
+    /// Returns what each edge is: by its guard, and constraints by whether other edges lead the same way.
     fn places(&self, edges: &[Edge<'_>], events: &BTreeMap<String, Guard>) -> Result<Vec<Place>, PtpnError> {
         let mut places = Vec::with_capacity(edges.len());
         for edge in edges {
@@ -456,7 +456,7 @@ fn duration(
     }
 }
 
-/// What a decision variable says of how likely its values are, by its name.
+/// Returns what a decision variable says of how likely its values are, by its name.
 fn probability(decision: Node<'_, '_>, id: &str, domain: &[Node<'_, '_>]) -> Option<String> {
     let name = text_of(decision, "name").unwrap_or_else(|_| id.to_owned());
     let said = |value: &Node<'_, '_>| {

@@ -41,7 +41,7 @@ pub(super) fn nested(network: &Network) -> Result<Tree, Obstacle> {
     }
 }
 
-/// Whether an arc only bounds what others lead through.
+/// Returns whether an arc only bounds what others lead through.
 pub(super) fn is_bound(kind: ArcKind) -> bool {
     matches!(kind, ArcKind::Span | ArcKind::Composite | ArcKind::Constraint)
 }
@@ -217,7 +217,7 @@ impl<'network> Reduction<'network> {
         Tree { sequences }
     }
 
-    /// Where the network does not nest: the first event at which something stays apart.
+    /// Returns where the network does not nest: the first event at which something stays apart.
     fn obstacle(&self) -> Obstacle {
         let (start, end) = (self.network.start, self.network.end);
         for node in (0..self.network.nodes.len()).map(NodeId::from_index) {

@@ -337,7 +337,7 @@ impl Writer<'_> {
     }
 }
 
-/// Whether a variable is a condition that is true or false.
+/// Returns whether a variable is a condition that is true or false.
 fn is_atom(variable: &Variable) -> bool {
     let mut values: Vec<&str> = variable.values.iter().map(SmolStr::as_str).collect();
     values.sort_unstable();
@@ -369,7 +369,7 @@ fn time(time: Time) -> Result<String, Obstacle> {
     }
 }
 
-/// What a comment can hold.
+/// Returns what a comment can hold.
 fn one_line(text: &str) -> String {
     text.replace(|character: char| character.is_control(), " ")
 }

@@ -75,7 +75,7 @@ impl Alternatives {
         Ok(())
     }
 
-    /// What a relaxation goes by.
+    /// Returns what a relaxation goes by.
     pub(super) fn premises(&self, id: CommonBoundId) -> impl Iterator<Item = Premise> + '_ {
         self.commons[id].ways.iter().map(|way| way.premise)
     }

@@ -28,7 +28,7 @@ pub(crate) struct Analysis {
 }
 
 impl Solver {
-    /// What a conflict teaches; `None` if there is no solution. The conflict's literals hold.
+    /// Returns what a conflict teaches; `None` if there is no solution. The conflict's literals hold.
     pub(super) fn analyze(&mut self, conflict: &[Literal]) -> Option<Learned> {
         let levels = conflict.iter().map(|&literal| self.level_of(literal));
         let level = levels.max().unwrap_or(0);
@@ -103,7 +103,7 @@ impl Solver {
         }
     }
 
-    /// Whether a literal follows from the others of lower levels.
+    /// Returns whether a literal follows from the others of lower levels.
     fn is_implied(&mut self, literal: Literal, analysis: &Analysis) -> bool {
         let Some(event) = self.trail.implying_event(literal) else { return false };
         if self.trail.events[event].cause == Cause::Decision {
@@ -158,7 +158,7 @@ impl Solver {
     }
 }
 
-/// Whether a clause's literal is the one that it made hold, of which `literal` is a consequence.
+/// Returns whether a clause's literal is the one that it made hold, of which `literal` is a consequence.
 fn literal_is(other: Literal, literal: Literal) -> bool {
     other.side == literal.side
 }

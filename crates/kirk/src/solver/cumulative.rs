@@ -85,7 +85,7 @@ impl Task {
         }
     }
 
-    /// Whether it continues at a time, whenever it starts and ends.
+    /// Returns whether it continues at a time, whenever it starts and ends.
     const fn is_on(&self, time: i64) -> bool {
         self.latest_start <= time && time < self.earliest_end
     }

@@ -111,12 +111,12 @@ impl Differences {
         Ok(())
     }
 
-    /// Whether any constraint leads from a side.
+    /// Returns whether any constraint leads from a side.
     pub(super) fn leads_on(&self, side: Side) -> bool {
         !self.from.is_empty(side)
     }
 
-    /// Whether the least times satisfy all constraints in force between times that exist.
+    /// Returns whether the least times satisfy all constraints in force between times that exist.
     pub(crate) fn are_satisfied(&self, trail: &Trail) -> bool {
         let value = |side: Side| {
             let least = trail.least(side.variable());
@@ -135,7 +135,7 @@ impl Differences {
         &self.cycles[id]
     }
 
-    /// How much room the constraints that wait for a literal leave: the least of them all.
+    /// Returns how much room the constraints that wait for a literal leave: the least of them all.
     pub(crate) fn slack(&self, trail: &Trail, when: Literal) -> i64 {
         let room = self.waiting.iter(when.side).map(|id| {
             let Difference { from, to, weight, .. } = self.all[id];

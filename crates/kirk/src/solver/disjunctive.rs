@@ -163,7 +163,8 @@ fn find_last(trail: &mut Trail, tasks: &[Task], Gap { gap, when }: Gap) -> Resul
     Ok(())
 }
 
-/// Whether the tasks that end by a time leave less room than the longest other one needs: otherwise none must come last.
+/// Returns whether the tasks that end by a time leave less room than the longest other one needs: otherwise none must
+/// come last.
 fn is_tight(tasks: &[Task], limit: i64, gap: i64) -> bool {
     let (mut needed, mut over, mut longest) = (0, i64::MIN, i64::MIN);
     for task in tasks {

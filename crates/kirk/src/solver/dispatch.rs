@@ -89,8 +89,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Whether uses can be dispatched: not too many, and not where nature chooses durations, because times that fit say nothing
-    /// then.
+    /// Returns whether uses can be dispatched: not too many, and not where nature chooses durations, because times that
+    /// fit say nothing then.
     pub(super) fn can_dispatch(&self) -> bool {
         !self.faces_nature && self.shares.num_uses() <= MAX_USES
     }
@@ -324,12 +324,12 @@ impl Pool {
     }
 }
 
-/// What a use is a part of.
+/// Returns what a use is a part of.
 const fn activity(task: &Task) -> (Variable, Literal) {
     (task.interval.start, task.interval.presence)
 }
 
-/// Whether an earlier use is in nobody's way any more.
+/// Returns whether an earlier use is in nobody's way any more.
 fn is_over(solver: &Solver, task: &Task) -> bool {
     solver.trail.fails(task.interval.presence) || is_started(solver, task)
 }

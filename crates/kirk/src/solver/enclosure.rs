@@ -49,8 +49,8 @@ impl<'m> Enclosures<'m> {
         self.mission
     }
 
-    /// Whether no choice of alternatives and links makes one of a pair be over before the other begins. `false` if that is
-    /// not known.
+    /// Returns whether no choice of alternatives and links makes one of a pair be over before the other begins. `false`
+    /// if that is not known.
     pub(super) fn never_orders(&mut self, pair: (LabelId, LabelId)) -> bool {
         self.looks_unordered(pair).unwrap_or(false)
     }
@@ -148,7 +148,7 @@ impl<'a> Inside<'a> {
             .map(|Choice { decision, alternative }| (decision, alternative))
     }
 
-    /// What holds in the block, for all durations of its open choices. `None` if that is too much.
+    /// Returns what holds in the block, for all durations of its open choices. `None` if that is too much.
     fn networks(&self) -> Option<Vec<Enclosed>> {
         let open = self.durations_of_open_choices()?;
         let links = if self.enclosing.has_links(self.block) { self.possible_links()? } else { Vec::new() };
@@ -223,9 +223,9 @@ impl<'a> Inside<'a> {
         })
     }
 
-    /// What each assertion in the block would contain if it carried all that it may carry: what is required inside a choice
-    /// that is open counts as all of it, which is more. `None` where an assertion is inside such a choice, or where there are
-    /// bounds between threads.
+    /// Returns what each assertion in the block would contain if it carried all that it may carry: what is required
+    /// inside a choice that is open counts as all of it, which is more. `None` where an assertion is inside such a
+    /// choice, or where there are bounds between threads.
     fn possible_links(&self) -> Option<Vec<(Ends, Ends)>> {
         let conditions = &self.mission.conditions;
         if !self.mission.constraints.is_empty() {
@@ -303,7 +303,7 @@ impl Enclosed {
         self.stn.push(to, from, -lower, 0);
     }
 
-    /// How long it is at least and at most from one point to another. `None` if that does not fit.
+    /// Returns how long it is at least and at most from one point to another. `None` if that does not fit.
     fn between(&mut self, from: PointId, to: PointId) -> Option<(i64, i64)> {
         let mut row = Vec::new();
         self.stn.distances_from(to, &mut row).ok()?;
@@ -312,7 +312,7 @@ impl Enclosed {
         Some((if least == INFINITE { 0 } else { -least }, row[to.index()]))
     }
 
-    /// Whether an interval is over before another begins, in every schedule.
+    /// Returns whether an interval is over before another begins, in every schedule.
     fn puts_before(&mut self, mission: &Model, first: LabelId, then: LabelId) -> bool {
         let (end, start) = (mission.interval(first).1, mission.interval(then).0);
         let gap = mission.gap_before(then, mission.gap_after[first]);

@@ -163,7 +163,7 @@ impl<'m> Problem<'m> {
         Ok((problem, solver))
     }
 
-    /// What the solver's solution chooses, with the least time of each node.
+    /// Returns what the solver's solution chooses, with the least time of each node.
     pub(crate) fn solution(&self, solver: &Solver) -> Choices {
         let chosen = |options: &Vec<Literal>| {
             let taken = options.iter().position(|&option| solver.trail.holds(option));
@@ -198,7 +198,7 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// What the literals of choices say in a record. A literal may say several things at once.
+    /// Returns what the literals of choices say in a record. A literal may say several things at once.
     pub(super) fn names(&self) -> Vec<(Literal, TreeChoice)> {
         let mut names = Vec::new();
         for (decision, options) in self.alternatives.iter_enumerated() {
@@ -245,17 +245,17 @@ impl<'m> Problem<'m> {
         solver.at_least_one(literals);
     }
 
-    /// What must lie between two labeled intervals that exclude each other, unless they may touch.
+    /// Returns what must lie between two labeled intervals that exclude each other, unless they may touch.
     pub(crate) fn gap_between(&self, _first: LabelId, then: LabelId) -> i64 {
         self.model.gap_before(then, self.model.gap)
     }
 
-    /// What counts as ordered where it follows from the rest.
+    /// Returns what counts as ordered where it follows from the rest.
     pub(crate) fn gap_after(&self, label: LabelId) -> i64 {
         self.model.gap_after[label]
     }
 
-    /// Whether two labels conflict and neither nesting nor a choice point orders them yet.
+    /// Returns whether two labels conflict and neither nesting nor a choice point orders them yet.
     pub(crate) fn must_be_ordered(&self, pair: (LabelId, LabelId)) -> bool {
         let (left, right) = pair;
         self.model.conditions.conflict(left, right)
@@ -299,7 +299,7 @@ impl<'m> Problem<'m> {
         self.windows = windows.collect();
     }
 
-    /// Whether arcs alone put one before the other whatever is chosen, touching where that counts.
+    /// Returns whether arcs alone put one before the other whatever is chosen, touching where that counts.
     pub(super) fn is_ordered_by_windows(&self, (left, right): (LabelId, LabelId)) -> bool {
         let before = |first: LabelId, then: LabelId| {
             self.windows[first].0 + self.gap_after(first) <= self.windows[then].1
@@ -317,7 +317,7 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// What makes something exist.
+    /// Returns what makes something exist.
     pub(super) fn presence(&self, context: Context) -> Literal {
         context
             .map_or(Literal::TRUE, |choice| self.alternatives[choice.decision][choice.alternative as usize])
@@ -488,7 +488,7 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// Whether an arc is selected in the present solution.
+    /// Returns whether an arc is selected in the present solution.
     pub(super) fn is_present(&self, solver: &Solver, arc: &ModelArc) -> bool {
         let holds = |context| solver.trail.holds(self.presence(context));
         holds(arc.context) && holds(arc.other_context)
@@ -649,7 +649,7 @@ impl<'m> Problem<'m> {
         sets
     }
 
-    /// Whether an assertion could carry a requirement, by their alternatives, durations and windows.
+    /// Returns whether an assertion could carry a requirement, by their alternatives, durations and windows.
     fn can_carry(&self, solver: &Solver, ask: LabelId, tell: LabelId) -> bool {
         let (asked, teller) = (self.intervals[ask], self.intervals[tell]);
         let arc = |label: LabelId| &self.model.arcs[self.model.conditions.labels[label].arc];
@@ -663,7 +663,7 @@ impl<'m> Problem<'m> {
             && solver.trail.least(asked.end) <= solver.trail.most(teller.end)
     }
 
-    /// Whether two labels can be in one plan.
+    /// Returns whether two labels can be in one plan.
     pub(super) fn can_be_together(&self, left: LabelId, right: LabelId) -> bool {
         self.model.can_be_together(left, right)
     }

@@ -60,7 +60,7 @@ impl Problem<'_> {
         }
     }
 
-    /// What a goal's sum is at least, by what holds whatever is decided.
+    /// Returns what a goal's sum is at least, by what holds whatever is decided.
     pub(crate) fn goal_bound(&self, solver: &Solver, goal: &ModelGoal) -> i64 {
         let relaxation = self.relaxation(solver, goal);
         let least = |Sum { terms, constant, parts }: Sum| {

@@ -28,7 +28,7 @@ impl Instants {
         Self { turn: turns(model), positions: vec![0; model.num_nodes].into() }
     }
 
-    /// Where an event stands.
+    /// Returns where an event stands.
     pub(super) fn position(&self, node: NodeId) -> u32 {
         self.positions[node]
     }
@@ -89,7 +89,7 @@ impl Problem<'_> {
         }
     }
 
-    /// What happens before what in the present solution, with the literals that it rests on.
+    /// Returns what happens before what in the present solution, with the literals that it rests on.
     pub(super) fn happens_before(&self, solver: &Solver) -> Vec<Before<[Literal; 2]>> {
         let model = self.model;
         let mut before = Vec::with_capacity(model.arcs.len());

@@ -97,7 +97,7 @@ fn have_same_relations(
     outside.copied().all(|third| same(third, third)) && labels.iter().all(|&(third, its)| same(third, its))
 }
 
-/// Whether a label belongs to an alternative of a decision.
+/// Returns whether a label belongs to an alternative of a decision.
 fn is_inside(model: &Model, label: LabelId, decision: DecisionId) -> bool {
     let mut context = model.arcs[model.conditions.labels[label].arc].context;
     while let Some(choice) = context {

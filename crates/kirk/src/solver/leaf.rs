@@ -128,7 +128,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Whether the least times keep all conflicting pairs apart and satisfy all differences in force.
+    /// Returns whether the least times keep all conflicting pairs apart and satisfy all differences in force.
     pub(super) fn is_solution(&self, problem: &Problem<'_>) -> bool {
         let labels = &problem.labels_by_variable;
         let is_kept = |left: LabelId, right: LabelId| {
@@ -145,7 +145,7 @@ impl Solver {
             && self.differences.are_satisfied(&self.trail)
     }
 
-    /// Whether two intervals that are present overlap in the least times; to touch is not to overlap.
+    /// Returns whether two intervals that are present overlap in the least times; to touch is not to overlap.
     fn overlap(&self, problem: &Problem<'_>, (left, right): (LabelId, LabelId)) -> bool {
         let (one, other) = (problem.intervals[left], problem.intervals[right]);
         self.trail.least(one.end) > self.trail.least(other.start)
@@ -251,7 +251,7 @@ impl Solver {
         }
     }
 
-    /// How much room an order leaves.
+    /// Returns how much room an order leaves.
     fn slack(&self, order: Literal) -> i64 {
         self.differences.slack(&self.trail, order)
     }

@@ -78,7 +78,7 @@ impl Literal {
         Self { side, most }
     }
 
-    /// Whether this implies `other` by itself.
+    /// Returns whether this implies `other` by itself.
     pub(crate) fn implies(self, other: Self) -> bool {
         self.side == other.side && self.most <= other.most
     }

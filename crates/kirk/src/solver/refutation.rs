@@ -101,12 +101,12 @@ impl Solver {
         }
     }
 
-    /// Whether nothing may be taken for granted that has a reason, so that the reason is found.
+    /// Returns whether nothing may be taken for granted that has a reason, so that the reason is found.
     pub(super) const fn takes_nothing_for_granted(&self) -> bool {
         self.derivations.is_some()
     }
 
-    /// Whether these hold, and may be taken for granted.
+    /// Returns whether these hold, and may be taken for granted.
     pub(super) fn are_certain(&self, literals: &[Literal]) -> bool {
         let is_certain = |&literal: &Literal| {
             self.trail.holds(literal) && (literal == Literal::TRUE || !self.takes_nothing_for_granted())
@@ -199,7 +199,7 @@ impl Solver {
         }
     }
 
-    /// What the refutation rests on. `None` if there is none, or if it was not kept.
+    /// Returns what the refutation rests on. `None` if there is none, or if it was not kept.
     fn core(&self) -> Option<BTreeSet<Used>> {
         let derivations = self.derivations.as_ref().filter(|derivations| derivations.is_refutation)?;
         let mut walk = Walk::new(self, derivations);

@@ -70,12 +70,12 @@ impl Task {
         if self.level.is_some() { self.interval.end } else { self.moment() }
     }
 
-    /// Whether it asks for a level from one event to another, and not just before one.
+    /// Returns whether it asks for a level from one event to another, and not just before one.
     pub(super) fn is_held(&self) -> bool {
         self.level.is_some() && self.start != self.end
     }
 
-    /// How far a level is beyond a bound that this use can break.
+    /// Returns how far a level is beyond a bound that this use can break.
     pub(super) const fn excess(&self, level: i64, bound: i64) -> i64 {
         excess(self.change, level, bound)
     }
@@ -110,7 +110,7 @@ impl Shares {
         self.all.is_empty()
     }
 
-    /// How many uses all resources have.
+    /// Returns how many uses all resources have.
     pub(super) fn num_uses(&self) -> usize {
         self.all.iter().map(|shared| shared.tasks.len()).sum()
     }
@@ -120,7 +120,7 @@ impl Shares {
         self.all.iter().map(|shared| (shared.supply, shared.tasks.clone())).collect()
     }
 
-    /// What the literals of orders say in a record.
+    /// Returns what the literals of orders say in a record.
     pub(super) fn names(&self) -> impl Iterator<Item = (Literal, TreeChoice)> + '_ {
         let name = |(first, then)| TreeChoice::UseOrder(UseOrdering { first, then });
         self.orders.iter().map(move |(&pair, &order)| (order, name(pair)))
@@ -181,8 +181,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Where the present solution takes more of a resource than there is: decides when one of those starts that are too much
-    /// together, or adds choice points.
+    /// Returns where the present solution takes more of a resource than there is: decides when one of those starts that
+    /// are too much together, or adds choice points.
     pub(super) fn share(&mut self, solver: &mut Solver) -> Sharing {
         let mut found: Vec<Critical> = Vec::new();
         let mut excluding: Vec<usize> = Vec::new();
@@ -244,7 +244,7 @@ impl Problem<'_> {
         Sharing::Restarted
     }
 
-    /// Which uses the solution orders.
+    /// Returns which uses the solution orders.
     pub(super) fn uses_ordered(&self, solver: &Solver) -> Vec<(UseId, UseId)> {
         let held = self.shares.orders.iter().filter(|(_, order)| solver.trail.holds(**order));
         held.map(|(&pair, _)| pair).collect()
@@ -332,7 +332,7 @@ impl Problem<'_> {
         add_resolvers(solver, options, present);
     }
 
-    /// Whether one of these pairs is in this order already.
+    /// Returns whether one of these pairs is in this order already.
     pub(super) fn is_resolved(&self, solver: &Solver, orders: &[(Task, Task)]) -> bool {
         let order = |(first, then): &(Task, Task)| self.shares.orders.get(&(first.id, then.id));
         orders.iter().any(|pair| order(pair).is_some_and(|&order| solver.trail.holds(order)))

@@ -38,7 +38,7 @@ impl Sweeps {
         self.points = points;
     }
 
-    /// Whether the bound of an event need not be carried on.
+    /// Returns whether the bound of an event need not be carried on.
     pub(super) fn is_settled(&self, event: usize) -> bool {
         self.settled.iter().any(|settled| settled.contains(&event))
     }

@@ -45,14 +45,14 @@ impl Touches {
         Self { rule, none, literals: BTreeMap::new() }
     }
 
-    /// What the literals say in a record.
+    /// Returns what the literals say in a record.
     pub(super) fn names(&self) -> impl Iterator<Item = (Literal, TreeChoice)> + '_ {
         let name = |(first, then)| TreeChoice::Order(Ordering { first, then });
         let assumed = (self.rule == Touching::Unneeded).then_some((self.none, TreeChoice::Apart));
         assumed.into_iter().chain(self.literals.iter().map(move |(&pair, &touch)| (touch, name(pair))))
     }
 
-    /// Whether a side says that a pair touches.
+    /// Returns whether a side says that a pair touches.
     pub(super) fn has(&self, side: Side) -> bool {
         self.literals.values().any(|touch| touch.side == side)
     }
@@ -96,8 +96,8 @@ impl Problem<'_> {
         literals
     }
 
-    /// What must not be assumed of the present solution, in which everything is decided: pairs that touch without need.
-    /// `false` if there are none.
+    /// Returns what must not be assumed of the present solution, in which everything is decided: pairs that touch
+    /// without need. `false` if there are none.
     pub(super) fn refute_touches(&self, solver: &mut Solver) -> bool {
         let touching = self.touches.literals.iter().filter(|&(_, &touch)| solver.trail.holds(touch));
         let touching: Vec<((LabelId, LabelId), Literal)> =
@@ -165,13 +165,13 @@ pub(crate) struct Unordered {
 }
 
 impl Unordered {
-    /// Whether one of two intervals is over before the other begins. What contradicts itself, as the whole mission may where a
-    /// part of it is looked at, puts nothing before anything.
+    /// Returns whether one of two intervals is over before the other begins. What contradicts itself, as the whole
+    /// mission may where a part of it is looked at, puts nothing before anything.
     pub(super) fn relates(&mut self, model: &Model, (left, right): (LabelId, LabelId)) -> bool {
         self.puts_before(model, left, right) || self.puts_before(model, right, left)
     }
 
-    /// Whether an interval is over before another begins, in every schedule.
+    /// Returns whether an interval is over before another begins, in every schedule.
     pub(super) fn puts_before(&mut self, model: &Model, first: LabelId, then: LabelId) -> bool {
         self.is_consistent && self.is_before(model, first, then)
     }

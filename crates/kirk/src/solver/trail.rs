@@ -117,14 +117,14 @@ impl Trail {
         self.levels.push((self.events.len() as u32, self.noted.len() as u32));
     }
 
-    /// What was decided last, where a level begins with a decision.
+    /// Returns what was decided last, where a level begins with a decision.
     pub(crate) fn last_decision(&self) -> Option<Literal> {
         let &(first, _) = self.levels.last()?;
         let event = self.events.get(EventId::from(first as usize))?;
         Some(Literal::new(event.side, event.most))
     }
 
-    /// What was decided, level by level.
+    /// Returns what was decided, level by level.
     pub(crate) fn decisions(&self) -> Vec<Literal> {
         let first = |&(first, _): &(u32, u32)| {
             let event = self.events.get(EventId::from(first as usize));
@@ -149,12 +149,12 @@ impl Trail {
         &self.noted[note].reason
     }
 
-    /// What a reason goes by, beside its literals.
+    /// Returns what a reason goes by, beside its literals.
     pub(super) fn premise_of(&self, note: NoteId) -> Premise {
         self.noted[note].premise
     }
 
-    /// Whether a reason is a limit on a goal.
+    /// Returns whether a reason is a limit on a goal.
     pub(crate) fn is_of_goal(&self, note: NoteId) -> bool {
         self.noted[note].is_of_goal
     }

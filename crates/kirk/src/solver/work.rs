@@ -131,7 +131,7 @@ impl Holding {
         }
     }
 
-    /// Whether two labels of one state are never at one time, whatever is planned (SPEC 10.2).
+    /// Returns whether two labels of one state are never at one time, whatever is planned (SPEC 10.2).
     fn takes_turns_with(self, other: Self, conditions: &Conditions) -> bool {
         match (self, other) {
             (Self::Change(left), Self::Change(right)) => conditions.exclude(left, right),

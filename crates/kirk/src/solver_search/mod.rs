@@ -40,7 +40,7 @@ const MAX_CONFLICTS_TO_KEEP: u64 = 500;
 /// How many conflicts it may take to find a plan that differs from another one in exchanged vehicles.
 const MAX_CONFLICTS_TO_EXCHANGE: u64 = 2_000;
 
-/// Whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
+/// Returns whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
 pub(crate) fn has_demands(model: &Model) -> bool {
     model.has_uncertainty || has_executives_demands(model)
 }
@@ -55,7 +55,7 @@ fn has_executives_demands(model: &Model) -> bool {
         || demands.variables.iter().any(is_open)
 }
 
-/// Whether the order in which some variable that keeps its value changes is left to planning (SPEC 10.2).
+/// Returns whether the order in which some variable that keeps its value changes is left to planning (SPEC 10.2).
 pub fn has_open_order(network: &Network) -> bool {
     // Most missions change each variable once, which needs no closer look.
     let has_several = lasting_variables(network).iter().any(|variable| variable.changes.len() > 1);
@@ -65,7 +65,7 @@ pub fn has_open_order(network: &Network) -> bool {
         })
 }
 
-/// Whether the program's structure orders all changes of a variable that exclude each other.
+/// Returns whether the program's structure orders all changes of a variable that exclude each other.
 fn are_nested(model: &Model, changes: &[LabelId]) -> bool {
     changes.iter().enumerate().all(|(position, &left)| {
         changes[position + 1..].iter().all(|&right| {
@@ -331,7 +331,8 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// Whether a plan keeps the limits. One in which intervals need not touch may not, though its solution does.
+    /// Returns whether a plan keeps the limits. One in which intervals need not touch may not, though its solution
+    /// does.
     fn is_within(&self, plan: &Plan, limits: &Limits) -> Result<bool, Unplannable> {
         for (goal, limit) in self.model.demands.goals.iter().zip(limits) {
             if let Some(limit) = *limit
@@ -521,7 +522,7 @@ impl<'a> Searching<'a> {
         Ok(())
     }
 
-    /// What follows for a goal from the limits of those before it, whatever is decided.
+    /// Returns what follows for a goal from the limits of those before it, whatever is decided.
     fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
         let part = Part { touching: Touching::Where, ..Part::default() };
         let encoded = Problem::new(self.model, part, &mut || false).ok()?;
@@ -643,7 +644,7 @@ mod tests {
 
     use crate::{Options, Unlimited};
 
-    /// Whether the plan of a mission with this objective is called optimal.
+    /// Returns whether the plan of a mission with this objective is called optimal.
     fn is_optimal(objective: &str) -> Option<bool> {
         let text = format!(
             "primitive Drive()[3,5] costs 2 per metre costs 1 rewards 4; primitive Wait()[2,4] costs 1;

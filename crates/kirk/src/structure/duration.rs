@@ -57,7 +57,7 @@ impl Structure {
         self.own_arcs(id).iter().fold((0, INFINITE), |own, &arc| intersect(own, bounds(model, arc)))
     }
 
-    /// What the arcs around a block add to its duration.
+    /// Returns what the arcs around a block add to its duration.
     pub(super) fn around(&self, model: &Model, id: BlockId) -> Result<(i64, i64), Unplannable> {
         let (enter, leave) = self.blocks[id].around_arcs;
         let bounds = |arc: Option<ArcId>| arc.map_or((0, 0), |arc| bounds(model, arc));

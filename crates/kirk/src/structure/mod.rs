@@ -225,7 +225,7 @@ impl Structure {
         (all.len() <= MAX_DURATIONS).then_some(all)
     }
 
-    /// What the nesting alone says about two arcs.
+    /// Returns what the nesting alone says about two arcs.
     pub(crate) fn relation(&self, left_arc: ArcId, right_arc: ArcId) -> Relation {
         let (Some(mut left), Some(mut right)) = (self.arc_blocks[left_arc], self.arc_blocks[right_arc])
         else {

@@ -106,7 +106,7 @@ fn both_searches_agree_on_what_may_touch() {
     );
 }
 
-/// Whether a mission has a plan, which the checker accepts.
+/// Returns whether a mission has a plan, which the checker accepts.
 fn has_plan(text: &str) -> bool {
     let network = network(text);
     let outcome = plan(&network, Search::ConflictDirected, false);

@@ -162,7 +162,7 @@ impl<'a> Arranger<'a> {
         }
     }
 
-    /// What surrounds a composite's children: left and right, above, below.
+    /// Returns what surrounds a composite's children: left and right, above, below.
     fn frame(&self, id: CompositeId) -> (f64, f64, f64) {
         let composite = self.composite(id);
         let is_box = self.titles[id.0 as usize].is_some() || composite.kind == CompositeKind::Program;
@@ -182,7 +182,7 @@ impl<'a> Arranger<'a> {
         }
     }
 
-    /// What a location starts, with room above the arrow to it for the guard that is there.
+    /// Returns what a location starts, with room above the arrow to it for the guard that is there.
     fn started_size(&self, location: LocationId, element: Element) -> Size {
         let size = self.element_size(element);
         let guards = self.transitions_of(location).filter(|(_, target)| *target == element);
@@ -195,7 +195,7 @@ impl<'a> Arranger<'a> {
         elements.iter().map(move |&element| self.started_size(location, element))
     }
 
-    /// What a composite maintains, or how it runs what is in it.
+    /// Returns what a composite maintains, or how it runs what is in it.
     fn title(&self, id: CompositeId, room: f64) -> Option<Text> {
         let composite = self.composite(id);
         let guard = composite.maintenance.and_then(|test| self.automaton.guard(test));
@@ -370,7 +370,7 @@ impl<'a> Arranger<'a> {
         }
     }
 
-    /// Where an element is entered from the left.
+    /// Returns where an element is entered from the left.
     fn entry(&self, element: Element) -> Point {
         let corner = match element {
             Element::Composite(id) => self.composite_rects[id.0 as usize].min,

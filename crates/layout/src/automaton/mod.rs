@@ -93,8 +93,8 @@ pub fn automaton(automaton: &Automaton, measure: &dyn Measure) -> AutomatonDrawi
 }
 
 impl AutomatonDrawing {
-    /// What lies at `point`, or at most `tolerance` beside it: a location before a transition before the innermost
-    /// composite.
+    /// Returns what lies at `point`, or at most `tolerance` beside it: a location before a transition before the
+    /// innermost composite.
     pub fn pick(&self, point: Point, tolerance: f64) -> Option<AutomatonItem> {
         let location = self.locations.iter().find(|location| location.rect.contains(point));
         if let Some(location) = location {

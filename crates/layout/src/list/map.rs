@@ -58,13 +58,13 @@ impl MapFrame {
         Self { low_m, high_m, rect, scale }
     }
 
-    /// Where a place of the world is.
+    /// Returns where a place of the world is.
     pub fn point(&self, place_m: Point2<f64>) -> Point {
         let offset = (place_m - self.middle_m()) * self.scale;
         self.rect.center().shifted(offset.x, -offset.y)
     }
 
-    /// Which place of the world is at a point.
+    /// Returns which place of the world is at a point.
     fn place_m(&self, point: Point) -> Point2<f64> {
         let center = self.rect.center();
         self.middle_m() + Vector2::new(point.x - center.x, center.y - point.y) / self.scale

@@ -151,8 +151,8 @@ fn crossed_texts(drawing: &NetworkDrawing, state: &NetworkState<'_>) -> BTreeSet
     found
 }
 
-/// What time has done to a network, over its list: how far arcs are that are under way, and dots in the events that
-/// have happened. Of the events, those in `area` that are at least `min_size` wide; all with `None`.
+/// Returns what time has done to a network, over its list: how far arcs are that are under way, and dots in the events
+/// that have happened. Of the events, those in `area` that are at least `min_size` wide; all with `None`.
 pub fn progress_list(
     drawing: &NetworkDrawing,
     network: &Network,
@@ -201,8 +201,8 @@ pub fn progress_list(
     list
 }
 
-/// What stands out of a network, under and over its list. `chosen` are curves that are drawn in full however many there
-/// are.
+/// Returns what stands out of a network, under and over its list. `chosen` are curves that are drawn in full however
+/// many there are.
 pub fn emphasis_list(
     drawing: &NetworkDrawing,
     network: &Network,
@@ -330,7 +330,7 @@ impl<'a> Builder<'a> {
         Self { drawing, network, plan: state.plan, parts: state.parts, enlarged }
     }
 
-    /// Where texts are as small on the screen as usual ones are at this zoom.
+    /// Returns where texts are as small on the screen as usual ones are at this zoom.
     fn zoom(&self, usual: f64) -> f64 {
         usual / self.enlarged
     }

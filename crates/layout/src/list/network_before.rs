@@ -36,7 +36,7 @@ const BELOW: f64 = 26.0;
 const BETWEEN: f64 = 12.0;
 
 impl NetworkChanges {
-    /// What differs of `plan` from `before`.
+    /// Returns what differs of `plan` from `before`.
     pub fn new(before: &Before, network: &Network, plan: &Plan) -> Self {
         let mut changes = Vec::new();
         for (index, occurrence) in network.occurrences.iter().enumerate() {
@@ -110,7 +110,7 @@ struct Words {
     room: f64,
 }
 
-/// What is said of each arc, on its line or as near to it as nothing else is written.
+/// Returns what is said of each arc, on its line or as near to it as nothing else is written.
 fn words(
     drawing: &NetworkDrawing,
     (network, plan): (&Network, &Plan),
@@ -236,7 +236,7 @@ fn boxes(drawing: &NetworkDrawing, network: &Network, arcs: &[(ArcId, BarChange)
     }
 }
 
-/// How high an arc is where its middle is.
+/// Returns how high an arc is where its middle is.
 fn height_at_middle(drawing: &NetworkDrawing, shape: &crate::drawing::ArcShape) -> f64 {
     let middle = shape.bounds.center();
     let points = display::geometry::flatten(shape.start, drawing.pieces(shape));
@@ -248,7 +248,7 @@ fn height_at_middle(drawing: &NetworkDrawing, shape: &crate::drawing::ArcShape) 
     crossing.unwrap_or(middle.y)
 }
 
-/// Where the names of what is gone stand: in rows below the drawing.
+/// Returns where the names of what is gone stand: in rows below the drawing.
 fn places_of_gone(bounds: Rect, gone: &[Gone], measure: &dyn Measure) -> Vec<Rect> {
     let mut places = Vec::new();
     let (mut left, mut top) = (bounds.min.x, bounds.max.y + BELOW);

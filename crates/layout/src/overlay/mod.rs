@@ -141,13 +141,13 @@ pub(crate) fn free_curve(from: Point, from_radius: f64, to: Point, to_radius: f6
     (rim(from, first, from_radius), Piece::Cubic(first, second, rim(to, second, to_radius)))
 }
 
-/// Whether one box hides both.
+/// Returns whether one box hides both.
 fn are_in_one_box(drawing: &NetworkDrawing, one: NodeId, other: NodeId) -> bool {
     let rect = |node| drawing.box_of(node).map(|hiding| hiding.rect);
     rect(one).is_some() && rect(one) == rect(other)
 }
 
-/// Where each label is written, or the box that hides it.
+/// Returns where each label is written, or the box that hides it.
 fn label_places(drawing: &NetworkDrawing, network: &Network) -> Vec<Rect> {
     let hidden = |label: &tpn::Label| {
         let from = network.arcs[label.arc.index()].from;

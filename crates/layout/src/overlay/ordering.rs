@@ -64,8 +64,8 @@ pub(super) fn between_nodes(
     along_track(drawing, kind, number, [from, to], 0)
 }
 
-/// Which of the tracks above its lower row each way takes, so that those that have one in common do not meet as far as
-/// there are tracks.
+/// Returns which of the tracks above its lower row each way takes, so that those that have one in common do not meet as
+/// far as there are tracks.
 fn tracks(drawing: &NetworkDrawing, ways: &[[NodeId; 2]]) -> Vec<usize> {
     let spans = ways.iter().enumerate().filter_map(|(at, ends)| {
         let [from, to] = ends.map(|node| drawing.anchor(node));
@@ -124,7 +124,7 @@ fn along_track(
     curve(kind, number, start, pieces)
 }
 
-/// Whether a line down from an event passes through others.
+/// Returns whether a line down from an event passes through others.
 fn passes_event(drawing: &NetworkDrawing, from: Point, down_to: f64, but: [NodeId; 2]) -> bool {
     let line = Rect { min: from, max: Point::new(from.x, down_to) };
     let mut is_found = false;

@@ -27,7 +27,7 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// What its times are called.
+    /// Returns what its times are called.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Approved => "approved",
@@ -76,7 +76,7 @@ impl Before {
         Self { origin: Origin::Planned, times: planned.collect() }
     }
 
-    /// Whether a bar is where it was, or is of a kind that is not compared.
+    /// Returns whether a bar is where it was, or is of a kind that is not compared.
     fn is_same(&self, bar: &Bar, [start, end]: [[f64; 2]; 2]) -> bool {
         match self.origin {
             Origin::Approved => [start, end] == [bar.start, bar.end],
@@ -97,7 +97,7 @@ impl Before {
         self.times.get(name).copied()
     }
 
-    /// What `plan` does not have, in order of time; delays are left out.
+    /// Returns what `plan` does not have, in order of time; delays are left out.
     pub fn gone(&self, network: &Network, plan: &Plan) -> Vec<Gone> {
         let is_selected = |it: &&Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
         let present: BTreeSet<&str> =

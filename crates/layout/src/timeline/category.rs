@@ -55,7 +55,7 @@ pub(super) fn categories(program: &Program, network: &Network, items: &mut [Item
     legend
 }
 
-/// Where an activity goes or works: the place that it sets or requires, or the last that it is called with.
+/// Returns where an activity goes or works: the place that it sets or requires, or the last that it is called with.
 fn site(network: &Network, bar: &Bar, sites: &BTreeMap<&str, usize>) -> Option<usize> {
     let place = |mode: LabelMode| {
         bar.labels.iter().filter_map(|label| network.labels.get(label.index())).find_map(|label| {

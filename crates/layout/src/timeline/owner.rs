@@ -33,7 +33,7 @@ pub(super) struct Owners {
 }
 
 impl Owner {
-    /// What its lane is called.
+    /// Returns what its lane is called.
     pub(super) fn name(&self, program: &Program, network: &Network) -> SmolStr {
         match self {
             Self::Mission => SmolStr::new_static("Mission"),

@@ -53,7 +53,8 @@ pub struct Step {
     pub level: Rational,
 }
 
-/// Whether a resource has a name in the text; the one that keeps the parts of an `unordered` block apart has not.
+/// Returns whether a resource has a name in the text; the one that keeps the parts of an `unordered` block apart has
+/// not.
 pub fn is_named(resource: &Resource) -> bool {
     !resource.name.contains('#')
 }
@@ -120,7 +121,7 @@ impl Profile {
         self.steps = self.steps();
     }
 
-    /// How many rows it is high: one where the resource is only in use or not.
+    /// Returns how many rows it is high: one where the resource is only in use or not.
     pub fn num_rows(&self) -> usize {
         match self.supply {
             Supply::Reusable { capacity } if capacity <= Rational::ONE => 1,
@@ -128,13 +129,13 @@ impl Profile {
         }
     }
 
-    /// What is used or left at a time of the earliest schedule.
+    /// Returns what is used or left at a time of the earliest schedule.
     pub fn level_at(&self, time: f64) -> Rational {
         let after = self.steps.partition_point(|step| step.time <= time);
         after.checked_sub(1).map_or_else(|| self.supply.initial_level(), |at| self.steps[at].level)
     }
 
-    /// Who takes of it or gives to it while this time of the earliest schedule passes.
+    /// Returns who takes of it or gives to it while this time of the earliest schedule passes.
     pub fn takers_at(&self, time: f64) -> impl Iterator<Item = &Taker> {
         self.takers.iter().filter(move |taker| taker.span[0] <= time && time < taker.span[1])
     }
@@ -155,7 +156,7 @@ impl Profile {
         levels.fold([low, high], |[low, high], level| [low.min(level), high.max(level)])
     }
 
-    /// What is asked of its level, and by whom.
+    /// Returns what is asked of its level, and by whom.
     pub fn conditions(&self) -> impl Iterator<Item = (&Taker, LevelCondition)> {
         self.takers.iter().filter_map(|taker| Some((taker, taker.level?)))
     }
@@ -231,7 +232,7 @@ impl Profile {
 }
 
 impl Taker {
-    /// What it does, in words.
+    /// Returns what it does, in words.
     pub fn words(&self) -> String {
         let amount = self.amount.readable();
         if let Some(LevelCondition { order, bound }) = self.level {

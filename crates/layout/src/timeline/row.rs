@@ -103,12 +103,12 @@ pub enum BarKind {
 }
 
 impl BarKind {
-    /// Whether it was executed, and the plan followed now has it no longer.
+    /// Returns whether it was executed, and the plan followed now has it no longer.
     pub const fn is_past(self) -> bool {
         matches!(self, Self::Past | Self::Aborted)
     }
 
-    /// Whether it is part of the track of a variable that keeps its value.
+    /// Returns whether it is part of the track of a variable that keeps its value.
     pub const fn is_of_state(self) -> bool {
         matches!(self, Self::Value | Self::Changing | Self::Need)
     }
@@ -146,12 +146,13 @@ impl Bar {
         (ends[0] < ends[1]).then_some(ends)
     }
 
-    /// Whether pinned events have narrowed its windows.
+    /// Returns whether pinned events have narrowed its windows.
     pub fn is_narrowed(&self) -> bool {
         self.free != [self.start, self.end]
     }
 
-    /// Whether it represents all of its occurrence, and not for a condition of an activity that has its own bar.
+    /// Returns whether it represents all of its occurrence, and not for a condition of an activity that has its own
+    /// bar.
     pub fn is_complete(&self, network: &Network) -> bool {
         let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
         self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)

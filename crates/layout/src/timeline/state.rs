@@ -121,7 +121,7 @@ fn values(network: &Network, label: &Label) -> SmolStr {
     }
 }
 
-/// What a bar of a state track represents, in lines: which value, who made it so, and who needs it.
+/// Returns what a bar of a state track represents, in lines: which value, who made it so, and who needs it.
 pub fn words(network: &Network, plan: &Plan, bar: &Bar) -> Vec<String> {
     lines(network, plan, bar).iter().map(|line| network.readable(line)).collect()
 }

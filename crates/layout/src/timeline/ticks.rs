@@ -42,7 +42,7 @@ impl Ticks {
         Self { marks, step, parts }
     }
 
-    /// What is written at a mark: as many decimals as the step needs, thousands apart.
+    /// Returns what is written at a mark: as many decimals as the step needs, thousands apart.
     pub fn label(&self, mark: f64) -> String {
         label(mark, self.step)
     }

@@ -182,7 +182,7 @@ fn drawn(chart: &Chart, shown: (&Network, &Plan), track: &Track) -> DisplayList 
     timeline_list(chart, shown, track, 0..chart.rows.len(), &state)
 }
 
-/// What a text covers, as far as it is not cut.
+/// Returns what a text covers, as far as it is not cut.
 fn covered(text: &display::Text) -> Rect {
     let width = text_width_at(&text.text, text.size, &approximate_text_width).min(text.rect.width());
     let middle = text.rect.center().y;

@@ -64,7 +64,7 @@ impl Queue {
         self.under_way.as_ref().map(|it| &it.job)
     }
 
-    /// Whether a job waits.
+    /// Returns whether a job waits.
     pub(super) fn has_waiting(&self) -> bool {
         !self.waiting.is_empty()
     }
@@ -102,7 +102,7 @@ impl Queue {
         }
     }
 
-    /// Whether no one wants the job under way any more.
+    /// Returns whether no one wants the job under way any more.
     pub(super) fn is_in_vain(&self) -> bool {
         self.under_way.as_ref().is_some_and(|it| {
             it.is_canceled || self.waiting.iter().any(|newer| newer.job.request.supersedes(&it.job.request))

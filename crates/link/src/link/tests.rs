@@ -74,7 +74,7 @@ fn ready() -> Link<Fake> {
     link
 }
 
-/// What the core was told since.
+/// Returns what the core was told since.
 fn told(link: &mut Link<Fake>) -> Vec<String> {
     std::mem::take(&mut link.transport.told)
 }

@@ -119,7 +119,7 @@ impl Session {
     }
 }
 
-/// Whether two texts come to the same program and plant, in the same places.
+/// Returns whether two texts come to the same program and plant, in the same places.
 fn is_same(one: &Control, other: &Control) -> bool {
     match (one, other) {
         (Control::Bound(one), Control::Bound(other)) => {
@@ -133,7 +133,7 @@ fn is_same(one: &Control, other: &Control) -> bool {
     }
 }
 
-/// Whether two texts come to the same program and plant, in other places.
+/// Returns whether two texts come to the same program and plant, in other places.
 fn is_elsewhere(one: &Control, other: &Control) -> bool {
     match (one, other) {
         (Control::Bound(one), Control::Bound(other)) => {
@@ -209,7 +209,7 @@ impl RunOfSystem {
     }
 }
 
-/// What an earlier run found out serves for an equal plant.
+/// Returns what an earlier run found out serves for an equal plant.
 fn estimator_for(system: &Arc<System>, estimator: Option<Estimator>) -> Estimator {
     let is_equal =
         |estimator: &Estimator| estimator.planner().model().without_places() == system.model.without_places();

@@ -52,7 +52,7 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// What is equal to what an earlier plan showed is kept. `network` is the one without paths.
+    /// Returns what is equal to what an earlier plan showed is kept. `network` is the one without paths.
     fn new(planned: &Planned, network: &Keyed<Network>, earlier: Option<&Self>, keys: &mut Keys) -> Self {
         let with_paths = if Arc::ptr_eq(&planned.network, &network.value) {
             network.clone()

@@ -49,7 +49,7 @@ enum Of {
 }
 
 impl Amount {
-    /// What there might be more of, if `uses` take too much of a resource.
+    /// Returns what there might be more of, if `uses` take too much of a resource.
     pub(super) fn new(network: &Network, program: &Program, source: &str, uses: &[&Use]) -> Option<Self> {
         let id = uses.first()?.resource;
         let resource = &network.resources[id.index()];
@@ -146,7 +146,7 @@ fn unit(network: &Network, id: ResourceId, resource: &Resource) -> Option<Ration
     (!unit.is_zero()).then_some(unit)
 }
 
-/// Whether a reservoir with this level has too little for `uses`, not too much.
+/// Returns whether a reservoir with this level has too little for `uses`, not too much.
 fn is_short(uses: &[&Use], mut lowest: Rational, level: Rational) -> Option<bool> {
     let mut after = level;
     let mut counts_meters = false;
@@ -192,7 +192,7 @@ fn least(most: i64, verdict: &mut dyn FnMut(i64) -> Verdict) -> Option<(i64, boo
 mod tests {
     use super::*;
 
-    /// What comes of looking for the least of some steps, with the numbers of steps that were looked at.
+    /// Returns what comes of looking for the least of some steps, with the numbers of steps that were looked at.
     fn found(most: i64, mut verdict: impl FnMut(i64) -> Verdict) -> (Option<(i64, bool)>, usize) {
         let mut looks = 0;
         let found = least(most, &mut |steps| {

@@ -104,7 +104,7 @@ impl Candidates<'_> {
         self.source.get(span.range()).unwrap_or_default()
     }
 
-    /// What the author calls a place of the text: the text itself where it is short.
+    /// Returns what the author calls a place of the text: the text itself where it is short.
     fn shown(&self, block: BlockId, arc: ArcId) -> String {
         let text = self.places.span(block).map_or("", |span| self.text(span));
         if text.is_empty() || text.len() > MAX_SHOWN || text.contains('\n') {
@@ -115,7 +115,7 @@ impl Candidates<'_> {
         text.to_owned()
     }
 
-    /// What the author calls an activity: by its number where there are several of its kind.
+    /// Returns what the author calls an activity: by its number where there are several of its kind.
     fn named(&self, block: BlockId, arc: ArcId) -> String {
         let occurrences = &self.network.occurrences;
         let Some(own) = self.network.arcs[arc.index()].occurrence.map(|it| &occurrences[it.index()]) else {

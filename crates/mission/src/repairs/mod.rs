@@ -73,7 +73,7 @@ pub fn add(
     }
 }
 
-/// What planning says of a changed text.
+/// Returns what planning says of a changed text.
 fn verdict(
     (source, goal): (&str, &Goal),
     problem: &Problem<'_>,

@@ -48,7 +48,7 @@ impl<'network> Places<'network> {
         Some([branch_of(one)?, branch_of(other)?])
     }
 
-    /// What an author takes for one thing: a block with the bounds and labels around it.
+    /// Returns what an author takes for one thing: a block with the bounds and labels around it.
     pub(super) fn unit(&self, block: BlockId) -> BlockId {
         let is_around = |above: &BlockId| {
             matches!(
@@ -59,13 +59,13 @@ impl<'network> Places<'network> {
         self.upwards(block).skip(1).take_while(is_around).last().unwrap_or(block)
     }
 
-    /// Whether a block is one of several that follow each other.
+    /// Returns whether a block is one of several that follow each other.
     pub(super) fn is_in_sequence(&self, block: BlockId) -> bool {
         let above = self.parents[block.index()];
         above.is_some_and(|above| matches!(self.block(above).kind, BlockKind::Sequence { .. }))
     }
 
-    /// Where a block is written.
+    /// Returns where a block is written.
     pub(super) fn span(&self, block: BlockId) -> Option<Span> {
         self.block(block).span
     }

@@ -65,12 +65,12 @@ impl Gaps {
         Some(Self { start: network.start, least })
     }
 
-    /// How much later the second event is than the first at least.
+    /// Returns how much later the second event is than the first at least.
     fn least(&self, first: NodeId, then: NodeId) -> f64 {
         if first == then { 0.0 } else { self.least.get(&(first, then)).copied().unwrap_or(f64::NEG_INFINITY) }
     }
 
-    /// Whether one stretch is over before the other one begins, whatever the schedule. `false` proves nothing.
+    /// Returns whether one stretch is over before the other one begins, whatever the schedule. `false` proves nothing.
     pub(super) fn is_before(&self, first: &Stretch, then: &Stretch) -> bool {
         let [start, end] = first.until;
         let weighted = |share: f64, event: NodeId| {

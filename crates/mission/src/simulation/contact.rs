@@ -109,7 +109,7 @@ fn contact(
     Some(Contact { at, name: network.occurrences.get(under_way.index())?.name.clone(), reason })
 }
 
-/// Where each vehicle is over time, in mission units.
+/// Returns where each vehicle is over time, in mission units.
 fn tracks(program: &Program, network: &Network, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
     let all = || drives.iter().flat_map(|drive| &drive.vehicles);
     let starts =

@@ -31,7 +31,7 @@ impl SeenMap {
         }
     }
 
-    /// What was seen by a time.
+    /// Returns what was seen by a time.
     pub(super) fn known_at(&self, time: f64) -> Vec<Point2<f64>> {
         self.points.values().filter(|(_, seen)| *seen <= time).map(|&(point, _)| point).collect()
     }
@@ -42,7 +42,8 @@ impl SeenMap {
     }
 }
 
-/// Whether a disc that goes along a way comes nearer than `reach` meters to a point. Where it starts and ends it has to be.
+/// Returns whether a disc that goes along a way comes nearer than `reach` meters to a point. Where it starts and ends
+/// it has to be.
 pub(super) fn is_blocked(way: &[Point2<f64>], points: &[Point2<f64>], reach: f64) -> bool {
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return false };
     let is_at_end =

@@ -23,7 +23,7 @@ pub(crate) fn nearest_free(is_free: impl Fn(Point2<f64>) -> bool, here: Point2<f
     )
 }
 
-/// How far a place is from a straight stretch, in meters.
+/// Returns how far a place is from a straight stretch, in meters.
 pub(super) fn distance_to([from, to]: [Point2<f64>; 2], place: Point2<f64>) -> f64 {
     let ahead = to - from;
     let length = ahead.norm_squared();
@@ -31,7 +31,8 @@ pub(super) fn distance_to([from, to]: [Point2<f64>; 2], place: Point2<f64>) -> f
     distance(&(from + ahead * share), &place)
 }
 
-/// Whether a straight stretch leads no nearer to what has been seen than its start is, but where it stays out of reach.
+/// Returns whether a straight stretch leads no nearer to what has been seen than its start is, but where it stays out
+/// of reach.
 pub(super) fn gets_past(
     mut seen_m: impl Iterator<Item = Point2<f64>>,
     stretch: [Point2<f64>; 2],

@@ -22,7 +22,7 @@ fn planned(world: &str, scenario: &str) -> Evaluated {
     core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network")
 }
 
-/// Whether a vehicle of `model`, which `declared` declares, can do what the scenario says.
+/// Returns whether a vehicle of `model`, which `declared` declares, can do what the scenario says.
 #[track_caller]
 fn can(declared: &str, model: &str, scenario: &str) -> bool {
     let evaluated = planned(&format!("{declared} vehicle V : {model} at CRATER;"), scenario);

@@ -39,7 +39,7 @@ impl Runs for Mission {
     }
 }
 
-/// How long something took in the plan that was executed last.
+/// Returns how long something took in the plan that was executed last.
 fn lasted(ran: &Ran, name: &str) -> Time {
     let executed = ran.outcome.last();
     let occurrence = executed.network.occurrences.iter().find(|occurrence| occurrence.name == name);

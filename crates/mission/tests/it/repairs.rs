@@ -7,7 +7,7 @@ use snapshot::Goal;
 
 use crate::support::Mission;
 
-/// What is offered for a mission without a plan. Each is applied and planned again here.
+/// Returns what is offered for a mission without a plan. Each is applied and planned again here.
 fn offered(source: &str) -> Vec<Fix> {
     let mission = Mission::read(source);
     let fixes = mission.with_plan((Options::default(), 1), |problem, mut planned, grounds, paths| {

@@ -197,7 +197,7 @@ const MISSIONS: [&str; 4] = [
     "A()[l,u] = { Work()[5,6] }\nscenario S[0,3] = { A() }\n",
 ];
 
-/// What the answer says, without how long it took and who counted its keys.
+/// Returns what the answer says, without how long it took and who counted its keys.
 fn content(snapshot: &Snapshot) -> Snapshot {
     let mut content = snapshot.clone();
     (content.timings, content.keys, content.revision) = Default::default();

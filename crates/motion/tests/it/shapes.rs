@@ -38,7 +38,7 @@ fn distance_to_segment(point: Pair, [a, b]: [Pair; 2]) -> f64 {
     distance(point, [a[0] + side[0] * share, a[1] + side[1] * share])
 }
 
-/// Where a ray meets the circle around a disc, by the chord that it cuts.
+/// Returns where a ray meets the circle around a disc, by the chord that it cuts.
 fn range_to_disc(origin: Pair, direction: Pair, (center, radius): (Pair, f64)) -> f64 {
     let offset = [center[0] - origin[0], center[1] - origin[1]];
     let along = offset[0] * direction[0] + offset[1] * direction[1];
@@ -50,7 +50,7 @@ fn range_to_disc(origin: Pair, direction: Pair, (center, radius): (Pair, f64)) -
     (along - half_chord.sqrt()).max(0.0)
 }
 
-/// Where a ray crosses a segment, by the areas that the two span.
+/// Returns where a ray crosses a segment, by the areas that the two span.
 fn range_to_face(origin: Pair, direction: Pair, [a, b]: [Pair; 2]) -> f64 {
     let side = [b[0] - a[0], b[1] - a[1]];
     let offset = [a[0] - origin[0], a[1] - origin[1]];

@@ -31,7 +31,7 @@ impl Machines {
         Self { model: Arc::clone(model), machines }
     }
 
-    /// Whether they are those of `model`.
+    /// Returns whether they are those of `model`.
     pub(super) fn are_of(&self, model: &Arc<Model>) -> bool {
         Arc::ptr_eq(&self.model, model)
     }
@@ -150,7 +150,8 @@ impl Machines {
     }
 }
 
-/// Which of the last step's conflicts assume a mode of this component, by their numbers in the list of conflicts.
+/// Returns which of the last step's conflicts assume a mode of this component, by their numbers in the list of
+/// conflicts.
 fn conflicts_with(context: &Context<'_>, plant: &PlantMoment, id: ComponentId) -> Option<String> {
     let conflicts = (1_usize..).zip(hitting_sets::conflicts(context, plant));
     let of_component =

@@ -17,7 +17,7 @@ const NUMBER_WIDTH: f32 = 20.0;
 /// So many of the most likely states are listed.
 const MAX_LISTED: usize = 6;
 
-/// Whether the last step showed something that was not expected.
+/// Returns whether the last step showed something that was not expected.
 pub(super) fn is_surprising(plant: &PlantMoment) -> bool {
     let is_surprising =
         |record: &StepRecord| record.outcome != StepOutcome::Explained || !record.conflicts.is_empty();

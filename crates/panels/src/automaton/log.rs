@@ -81,7 +81,7 @@ fn cells(shown: Shown<'_>, moment: &Moment, next: Option<&Moment>) -> [String; 5
     [marked, goals, commands.unwrap_or_default(), outcome(shown, next), observed.unwrap_or_default()]
 }
 
-/// What was injected, found and preempted in a step, and which times were up.
+/// Returns what was injected, found and preempted in a step, and which times were up.
 fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
     let Some(next) = next else { return String::new() };
     let mut parts = Vec::new();

@@ -158,7 +158,7 @@ impl Standing {
         }
     }
 
-    /// Whether the most likely mode is the true one.
+    /// Returns whether the most likely mode is the true one.
     pub(super) const fn is_right(&self) -> bool {
         self.estimate == self.truth
     }
@@ -173,7 +173,7 @@ impl Standing {
         likelihood.map_or_else(String::new, |likelihood| percent_between(likelihood, most_decimals))
     }
 
-    /// What is to be said of a mode, for those who hear it.
+    /// Returns what is to be said of a mode, for those who hear it.
     fn describe(&self, component: &Component, mode: u8) -> String {
         let name = component.modes.get(usize::from(mode)).map_or("?", |mode| mode.name.as_str());
         let mut text = format!("{}: {name}, {}", component.name, self.percent(mode, 2));
@@ -190,7 +190,7 @@ impl Standing {
     }
 }
 
-/// Where the drawing lies in `rect`: in its middle.
+/// Returns where the drawing lies in `rect`: in its middle.
 fn placement(rect: Rect, drawing: &MachineDrawing, scale: f32) -> Placement {
     let left = (rect.width() - drawing.bounds.width() as f32 * scale) / 2.0;
     let at = pos2((rect.left() + left).round() + 0.5, rect.top() + 0.5);

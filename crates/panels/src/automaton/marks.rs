@@ -5,7 +5,7 @@ use layout::AutomatonItem;
 use rmpl::Span;
 use text_editing::Caret;
 
-/// Where something on the drawing is written; for a transition its guard.
+/// Returns where something on the drawing is written; for a transition its guard.
 pub(super) fn span_of(automaton: &Automaton, item: AutomatonItem) -> Option<Span> {
     match item {
         AutomatonItem::Location(id) => Some(automaton.location(id)?.span),
@@ -18,8 +18,8 @@ pub(super) fn span_of(automaton: &Automaton, item: AutomatonItem) -> Option<Span
     }
 }
 
-/// What is marked on the drawing: what was pressed last, as long as its text is selected; otherwise all that the smallest
-/// expression around the caret, or around the selected text, represents.
+/// Returns what is marked on the drawing: what was pressed last, as long as its text is selected; otherwise all that
+/// the smallest expression around the caret, or around the selected text, represents.
 pub(super) fn marked(
     automaton: &Automaton,
     caret: Caret,

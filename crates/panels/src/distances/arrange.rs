@@ -98,7 +98,7 @@ fn ordered(column: &[usize], edge: &Edge) -> (usize, usize) {
     if (column[from], from) <= (column[to], to) { (from, to) } else { (to, from) }
 }
 
-/// Which vertices are connected, the earlier one first: a bound from below says which that is.
+/// Returns which vertices are connected, the earlier one first: a bound from below says which that is.
 fn pairs(graph: &DistanceGraph) -> Vec<(usize, usize)> {
     let mut pairs: Vec<(usize, usize)> = graph
         .edges

@@ -254,7 +254,7 @@ fn move_view(
     }
 }
 
-/// Where the contradiction is, or what is selected.
+/// Returns where the contradiction is, or what is selected.
 fn part_that_matters(drawn: &Drawn) -> Option<display::Rect> {
     let Drawn { graph, arranged, seeds, .. } = drawn;
     let edges = graph.edges.iter().filter(|edge| edge.is_in_cycle);

@@ -54,7 +54,7 @@ fn legible(font_size: f32) -> f32 {
     ((font_size * 2.0).floor() / 2.0).max(size::SMALL)
 }
 
-/// How wide a vertex is drawn.
+/// Returns how wide a vertex is drawn.
 pub fn width(vertex: &Vertex) -> f64 {
     let widths = vertex.names.iter().map(|name| display::approximate_text_width(name));
     let Some(widest) = widths.reduce(f32::max) else { return 2.0 * DOT };
@@ -86,7 +86,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What is at a place of the screen.
+    /// Returns what is at a place of the screen.
     pub fn pointed(&self, pointer: Pos2) -> Option<Pointed> {
         if let Some(vertex) =
             (0..self.graph.vertices.len()).find(|&vertex| self.frame(vertex).contains(pointer))
@@ -103,7 +103,7 @@ impl Scene<'_> {
         nearest.filter(|(distance, _)| *distance < 5.0).map(|(_, edge)| Pointed::Edge(edge))
     }
 
-    /// What is said about it.
+    /// Returns what is said about it.
     pub fn describe(&self, pointed: Pointed) -> Vec<String> {
         match pointed {
             Pointed::Vertex(vertex) => {
@@ -131,7 +131,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What it selects.
+    /// Returns what it selects.
     pub fn selection_of(&self, pointed: Pointed) -> Selection {
         match pointed {
             Pointed::Vertex(vertex) => {
@@ -159,7 +159,7 @@ impl Scene<'_> {
         Rect::from_center_size(center, vec2(width(vertex) as f32, height as f32) * zoom)
     }
 
-    /// Whether the step that is looked at is about a bound.
+    /// Returns whether the step that is looked at is about a bound.
     fn is_new(&self, edge: &Edge) -> bool {
         match edge.constraint {
             Constraint::Lower(arc) | Constraint::Upper(arc) => self.focus.arcs.contains(&arc),
@@ -344,8 +344,8 @@ fn distance_to_segment(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     point.distance(from + along * at)
 }
 
-/// Where a curve ends that leads to a box, and its direction there: where it enters the box, or its last point if it
-/// stops short of it. Nothing of a curve without length.
+/// Returns where a curve ends that leads to a box, and its direction there: where it enters the box, or its last point
+/// if it stops short of it. Nothing of a curve without length.
 fn tip(frame: Rect, points: &[Pos2]) -> Option<(Pos2, Vec2)> {
     let enters = points.windows(2).find(|pair| !frame.contains(pair[0]) && frame.contains(pair[1]));
     let Some(enters) = enters else {

@@ -132,7 +132,7 @@ fn natures(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut 
     }
 }
 
-/// How long an activity takes as things stand: in this run if it comes to its end, otherwise at least.
+/// Returns how long an activity takes as things stand: in this run if it comes to its end, otherwise at least.
 fn usual_duration(shown: Shown<'_>, id: OccurrenceId) -> Time {
     let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return Time::ZERO };
     let took = shown.run.plans.last().and_then(|last| {
@@ -160,7 +160,7 @@ fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-/// What follows a number in a unit.
+/// Returns what follows a number in a unit.
 pub(super) fn suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }

@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, entry: &Entry, comm
     });
 }
 
-/// What an entry is about.
+/// Returns what an entry is about.
 fn subject(shown: Shown<'_>, entry: &Entry) -> Option<Selection> {
     let name = match &entry.happening {
         Happening::Executed { name } | Happening::Violation { name, .. } => {

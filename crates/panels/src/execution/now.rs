@@ -48,7 +48,7 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     });
 }
 
-/// Whether the mission has come to its end at the time shown.
+/// Returns whether the mission has come to its end at the time shown.
 fn is_finished(context: &Context<'_>, shown: Shown<'_>) -> bool {
     let is_over = shown.run.log.last().is_some_and(|last| {
         has_come(last.time, context.state.playback.time)
@@ -126,7 +126,7 @@ fn row(
     });
 }
 
-/// What an occurrence is called where it is read: an activity with its arguments, or a condition.
+/// Returns what an occurrence is called where it is read: an activity with its arguments, or a condition.
 pub(super) fn words(shown: Shown<'_>, id: OccurrenceId) -> String {
     let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return String::new() };
     let condition = shown.network.labels.iter().find(|label| label.owner == Some(id));

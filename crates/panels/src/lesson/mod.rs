@@ -91,7 +91,7 @@ impl LessonPanel {
     }
 }
 
-/// How lessons and the manual look: terms of the glossary tell what they mean.
+/// Returns how lessons and the manual look: terms of the glossary tell what they mean.
 pub(crate) fn prose<'a>(context: &'a Context<'_>) -> Prose<'a> {
     Prose {
         tokens: context.tokens,

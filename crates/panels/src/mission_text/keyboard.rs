@@ -25,7 +25,8 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
     editor::typed(context, &keyboard).into_iter().filter_map(|action| command(state, action)).collect()
 }
 
-/// What events do to the text that no frame has taken in yet: nothing, if the editor does not have the keyboard.
+/// Returns what events do to the text that no frame has taken in yet: nothing, if the editor does not have the
+/// keyboard.
 pub fn typed_ahead(context: &Context, events: &[Event]) -> Vec<TextCommand> {
     if context.memory(|memory| memory.has_focus(editor_id())) {
         editor::typed_ahead(events)

@@ -29,7 +29,7 @@ pub(super) fn entries(state: &AppState) -> Vec<MenuEntry<'static>> {
     entry.collect()
 }
 
-/// What an entry does.
+/// Returns what an entry does.
 pub(super) fn command(state: &AppState, index: usize) -> Option<Command> {
     ENTRIES.get(index).and_then(|(id, _)| registry::by_id(id))?.plain(state)
 }

@@ -68,7 +68,7 @@ impl Panel for EditorPanel {
     }
 }
 
-/// How the text of the last answer became the present one.
+/// Returns how the text of the last answer became the present one.
 fn shift(context: &Context<'_>) -> Shift {
     let Some(latest) = context.state.snapshots.latest() else { return Shift::default() };
     let document = &context.state.document;
@@ -91,7 +91,7 @@ fn diagnostics<'a>(context: &Context<'a>, shift: Shift) -> Vec<Diagnostic<'a>> {
     .collect()
 }
 
-/// What the step of the search that is looked at is about, and what is selected in the other panels.
+/// Returns what the step of the search that is looked at is about, and what is selected in the other panels.
 fn marks(context: &Context<'_>, shift: Shift) -> Vec<Mark> {
     let tokens = context.tokens;
     let mut marks = Vec::new();

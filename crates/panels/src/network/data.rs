@@ -204,7 +204,7 @@ impl Drawn {
     }
 }
 
-/// Whether a plan speaks of this network: one snapshot's always does, but a drawing must not rely on it.
+/// Returns whether a plan speaks of this network: one snapshot's always does, but a drawing must not rely on it.
 pub(super) fn fits(plan: &Plan, network: &Network) -> bool {
     plan.selected_nodes.len() == network.nodes.len() && plan.selected_arcs.len() == network.arcs.len()
 }
@@ -262,7 +262,7 @@ pub(super) fn block_key(network: &Network, block: BlockId) -> Option<String> {
     Some(format!("{}@{start}…{end}", layout::text::structure_name(&block.kind)))
 }
 
-/// Whether a block can be collapsed: single arcs cannot, nor can the whole mission.
+/// Returns whether a block can be collapsed: single arcs cannot, nor can the whole mission.
 pub(super) fn is_collapsible(network: &Network, block: BlockId) -> bool {
     let is_part = |kind: &BlockKind| !matches!(kind, BlockKind::Leaf { .. });
     network.root != Some(block) && network.blocks.get(block.index()).is_some_and(|block| is_part(&block.kind))

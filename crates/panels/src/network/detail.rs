@@ -41,12 +41,12 @@ impl Detail {
         self.has_windows = has_windows;
     }
 
-    /// Whether something is open or collapsed that was not by itself.
+    /// Returns whether something is open or collapsed that was not by itself.
     pub(super) fn is_changed(&self) -> bool {
         self.is_expanded || self.focus.is_some() || !self.collapsed.is_empty()
     }
 
-    /// Whether some part is drawn in more detail than the rest.
+    /// Returns whether some part is drawn in more detail than the rest.
     pub(super) fn has_focus(&self) -> bool {
         self.focus.is_some()
     }
@@ -94,7 +94,8 @@ impl Detail {
         }
     }
 
-    /// What is drawn of a network: its options, what has most detail, and the room there is, if it is made to fit.
+    /// Returns what is drawn of a network: its options, what has most detail, and the room there is, if it is made to
+    /// fit.
     fn drawn(&self, network: &Network) -> (Options, Option<layout::Range>, Option<Room>) {
         let window_width = if self.has_windows { Options::default().window_width } else { 0.0 };
         let collapsed = collapsed_blocks(network, &self.collapsed);

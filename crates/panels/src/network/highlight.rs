@@ -123,7 +123,7 @@ pub(super) fn wanted(selection: &Selection, network: &Network, drawing: &Network
     if nodes.iter().any(|&node| drawing.node(node).is_some()) { Vec::new() } else { nodes }
 }
 
-/// What an item of the drawing represents.
+/// Returns what an item of the drawing represents.
 pub(super) fn selection_of(item: Item, network: &Network) -> Selection {
     match item {
         Item::Node(node) => match network.nodes.get(node.index()).and_then(|it| it.decision) {

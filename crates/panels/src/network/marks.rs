@@ -88,7 +88,7 @@ impl Groups {
         Self(grouped(panel, view, marks))
     }
 
-    /// What each covers on the screen.
+    /// Returns what each covers on the screen.
     pub(super) fn rects(&self) -> impl Iterator<Item = Rect> {
         self.0.iter().map(|(center, members)| {
             let mark = Rect::from_center_size(*center, vec2(2.0 * RADIUS, 2.0 * RADIUS));
@@ -206,7 +206,7 @@ fn place_on(drawing: &NetworkDrawing, network: &Network, arc: ArcId) -> Point {
     most.last().map_or(shape.start, |piece| piece.end())
 }
 
-/// How far the texts of an arc reach below a place on it, where a mark there would cover them.
+/// Returns how far the texts of an arc reach below a place on it, where a mark there would cover them.
 fn texts_below(drawing: &NetworkDrawing, network: &Network, arc: ArcId, at: Point) -> f64 {
     let is_own = |owner: Item| match owner {
         Item::Arc(owner) => owner == arc,
@@ -219,7 +219,7 @@ fn texts_below(drawing: &NetworkDrawing, network: &Network, arc: ArcId, at: Poin
     own.map(|text| text.rect.max.y - at.y).fold(0.0, f64::max)
 }
 
-/// How much of what either covers both cover; an empty span counts as one character.
+/// Returns how much of what either covers both cover; an empty span counts as one character.
 fn share(one: Span, other: Span) -> f64 {
     let end = |span: Span| span.end.max(span.start + 1);
     let common = end(one).min(end(other)).saturating_sub(one.start.max(other.start));

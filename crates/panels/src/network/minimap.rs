@@ -35,7 +35,7 @@ impl Overview {
         }
     }
 
-    /// Where it goes, if the drawing is larger than what is seen.
+    /// Returns where it goes, if the drawing is larger than what is seen.
     pub(super) fn place(&self, panel: Rect, view: &View, drawn: &Drawn) -> Option<Rect> {
         let bounds = drawn.drawing.bounds;
         let visible = view.visible(panel);
@@ -52,7 +52,7 @@ impl Overview {
     }
 }
 
-/// Whether there is an event, a box or a text in a part of the drawing.
+/// Returns whether there is an event, a box or a text in a part of the drawing.
 fn covers_some(area: display::Rect, drawn: &Drawn) -> bool {
     let drawing = &drawn.drawing;
     let mut is_found = false;

@@ -101,7 +101,7 @@ impl Panel for NetworkPanel {
 }
 
 impl NetworkPanel {
-    /// Whether something is behind a box, and whether that is not as it would be by itself.
+    /// Returns whether something is behind a box, and whether that is not as it would be by itself.
     fn boxes(&self) -> (bool, bool) {
         let mut blocks = self.drawn.drawing.blocks.iter();
         (blocks.any(|block| block.form == BlockForm::Collapsed), self.detail.is_changed())
@@ -144,8 +144,8 @@ impl NetworkPanel {
         focus.map(|focus| Highlight::of_focus(&focus, network).nodes).unwrap_or_default()
     }
 
-    /// What tells which approved plan is laid over the present one: in a review, unless that is switched off or a step of
-    /// the search is looked at.
+    /// Returns what tells which approved plan is laid over the present one: in a review, unless that is switched off or
+    /// a step of the search is looked at.
     fn approved_key(context: &Context<'_>) -> Option<String> {
         let state = context.state;
         let is_wanted = state.window.workspace == Workspace::Review
@@ -485,7 +485,7 @@ impl NetworkPanel {
         carry::connector(ui, context, end, panel, (span, &network.readable(&occurrence.name)));
     }
 
-    /// What is under the pointer: a shape, or a curve over the shapes.
+    /// Returns what is under the pointer: a shape, or a curve over the shapes.
     fn pointed(
         &self,
         panel: Rect,
@@ -635,7 +635,7 @@ fn arrow_keys(ui: &Ui) -> egui::Vec2 {
     })
 }
 
-/// What a badge says of an older text that the drawing is of.
+/// Returns what a badge says of an older text that the drawing is of.
 fn stale_text(context: &Context<'_>) -> Option<&'static str> {
     match context.state.status() {
         _ if !context.is_stale => None,

@@ -29,7 +29,7 @@ impl Search {
         self.shown = None;
     }
 
-    /// How many matches there are, and which was shown last, from 1.
+    /// Returns how many matches there are, and which was shown last, from 1.
     pub(super) fn count(&self) -> (usize, Option<usize>) {
         (self.matches.len(), self.shown.map(|at| at + 1))
     }

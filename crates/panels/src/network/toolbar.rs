@@ -81,7 +81,7 @@ pub(super) fn show(
     asked
 }
 
-/// What can be switched on and off, with its name and what it means.
+/// Returns what can be switched on and off, with its name and what it means.
 fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {
     [
         (&mut view.names, "Names", "Names of activities"),

@@ -33,27 +33,27 @@ impl View {
         self.zoom
     }
 
-    /// Whether all of the drawing is to stay in view.
+    /// Returns whether all of the drawing is to stay in view.
     pub(crate) fn is_fitted(&self) -> bool {
         self.is_fitted
     }
 
-    /// Where the drawing lies on the screen.
+    /// Returns where the drawing lies on the screen.
     pub(crate) fn placement(&self, panel: Rect) -> Placement {
         Placement { point: self.center, at: panel.center(), zoom: self.zoom }
     }
 
-    /// Where a point of the drawing is on the screen.
+    /// Returns where a point of the drawing is on the screen.
     pub(crate) fn screen_point(&self, panel: Rect, point: Point) -> Pos2 {
         self.placement(panel).screen_point(point)
     }
 
-    /// Where a rectangle of the drawing is on the screen.
+    /// Returns where a rectangle of the drawing is on the screen.
     pub(crate) fn screen_rect(&self, panel: Rect, rect: display::Rect) -> Rect {
         self.placement(panel).screen_rect(rect)
     }
 
-    /// What point of the drawing is at a place of the screen.
+    /// Returns what point of the drawing is at a place of the screen.
     pub(crate) fn drawing_point(&self, panel: Rect, position: Pos2) -> Point {
         self.placement(panel).drawing_point(position)
     }

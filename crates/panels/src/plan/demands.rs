@@ -104,7 +104,7 @@ fn show_orders(
     });
 }
 
-/// How far a resource is used in words, and as parts of what there is: from, to.
+/// Returns how far a resource is used in words, and as parts of what there is: from, to.
 fn figures(supply: Supply, levels: Levels) -> Option<(String, [f32; 2])> {
     match (supply, levels) {
         (Supply::Reusable { capacity }, Levels::Peak(peak)) => {

@@ -111,7 +111,7 @@ fn show_fixes(
     }
 }
 
-/// Where the present text was edited last.
+/// Returns where the present text was edited last.
 fn last_edited(context: &Context<'_>) -> Option<Span> {
     let document = &context.state.document;
     let last = document.edits_since(document.revision().checked_sub(1)?)?.last()?;

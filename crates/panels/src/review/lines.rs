@@ -110,7 +110,7 @@ pub(super) fn go_to(list: &List<'_>, section: Section, line: &Line, commands: &m
     }
 }
 
-/// What a line is about, in the present network.
+/// Returns what a line is about, in the present network.
 fn selection(snapshot: &Snapshot, section: Section, line: &Line) -> Option<Selection> {
     let network = snapshot.network.as_deref();
     let label = |name: &String| {

@@ -152,7 +152,7 @@ impl People {
         self.me.is_some()
     }
 
-    /// Whether an entry was signed with the key that signs here.
+    /// Returns whether an entry was signed with the key that signs here.
     fn is_own(&self, entry: &Entry) -> bool {
         self.me.as_ref().is_some_and(|(_, key)| entry.key.as_ref() == Some(key))
     }
@@ -521,7 +521,7 @@ impl People {
     }
 }
 
-/// How a comment that is not open came to be so.
+/// Returns how a comment that is not open came to be so.
 fn resolution(context: &Context<'_>, comment: &Entry) -> String {
     let record = context.state.review.record();
     let resolved = record
@@ -535,7 +535,7 @@ fn resolution(context: &Context<'_>, comment: &Entry) -> String {
     }
 }
 
-/// Who made an entry, with the role.
+/// Returns who made an entry, with the role.
 pub(super) fn who(entry: &Entry) -> String {
     match (entry.by.as_str(), entry.role.as_str()) {
         ("", _) => "someone".to_owned(),

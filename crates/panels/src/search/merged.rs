@@ -50,7 +50,7 @@ pub struct Merged<'a> {
 }
 
 impl Merged<'_> {
-    /// Whether either search knows a state at its step.
+    /// Returns whether either search knows a state at its step.
     pub fn is_known(&self, id: TreeNodeId) -> bool {
         let own = self.tree.own.get(id as usize).copied().unwrap_or_default();
         (0..2).any(|side| {
@@ -69,7 +69,7 @@ impl Merged<'_> {
         })
     }
 
-    /// What came of a state in whichever search has come furthest there by its step.
+    /// Returns what came of a state in whichever search has come furthest there by its step.
     pub fn status(&self, id: TreeNodeId) -> TreeStatus {
         let own = self.tree.own.get(id as usize).copied().unwrap_or_default();
         let known = (0..2).filter_map(|side| {

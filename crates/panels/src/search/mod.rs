@@ -326,7 +326,7 @@ impl Side {
     }
 }
 
-/// How a search is called on screen.
+/// Returns how a search is called on screen.
 fn kind_name(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::Chronological => "Chronological",
@@ -335,7 +335,7 @@ fn kind_name(kind: SearchKind) -> &'static str {
     }
 }
 
-/// What a search does, in a sentence.
+/// Returns what a search does, in a sentence.
 fn kind_help(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::Chronological => "Undo the last choice after each failure",

@@ -147,19 +147,19 @@ impl TreeIndex {
         self.goal = entered().find(is_plan).or_else(|| entered().next()).unwrap_or(0);
     }
 
-    /// How a state failed, if it did.
+    /// Returns how a state failed, if it did.
     pub fn failure<'t>(&self, trace: &'t Trace, id: TreeNodeId) -> Option<&'t Event> {
         let step = self.failure_step.get(id as usize).copied().flatten()?;
         trace.events.get(step).map(|entry| &entry.event)
     }
 
-    /// Whether a state is known at `step`: it was entered, or it is an alternative of a choice that was reached. Without
-    /// a step all are.
+    /// Returns whether a state is known at `step`: it was entered, or it is an alternative of a choice that was
+    /// reached. Without a step all are.
     pub fn is_known(&self, id: TreeNodeId, step: Option<usize>) -> bool {
         step.is_none_or(|step| self.known_from.get(id as usize).is_some_and(|&from| from <= step))
     }
 
-    /// What is known of a state at `step`.
+    /// Returns what is known of a state at `step`.
     pub fn status(&self, trace: &Trace, id: TreeNodeId, step: Option<usize>) -> TreeStatus {
         if self.exclusion(id, step).is_some() {
             return TreeStatus::Excluded;
@@ -187,7 +187,7 @@ impl TreeIndex {
         }
     }
 
-    /// What a best-first search has last said of a state by `step`, or at all: what it may lead to.
+    /// Returns what a best-first search has last said of a state by `step`, or at all: what it may lead to.
     pub fn bounded<'t>(&self, trace: &'t Trace, id: TreeNodeId, step: Option<usize>) -> Option<&'t Event> {
         let steps = self.bounded.get(id as usize)?;
         let count = step.map_or(steps.len(), |step| steps.partition_point(|&at| at as usize <= step));
@@ -212,7 +212,8 @@ impl TreeIndex {
         step.is_none_or(|step| exclusion.step <= step).then_some(exclusion)
     }
 
-    /// Whether the search went elsewhere from a state without a plan, and without having tried all that is below it.
+    /// Returns whether the search went elsewhere from a state without a plan, and without having tried all that is
+    /// below it.
     pub fn is_left(&self, id: TreeNodeId, step: Option<usize>) -> bool {
         let at = id as usize;
         let last = self.last_step.get(at).copied().flatten();
@@ -220,7 +221,7 @@ impl TreeIndex {
             && step.is_none_or(|step| last.is_some_and(|last| last < step))
     }
 
-    /// Whether all that was tried below a state failed, so that it can be folded.
+    /// Returns whether all that was tried below a state failed, so that it can be folded.
     pub fn is_failed_subtree(&self, id: TreeNodeId) -> bool {
         let at = id as usize;
         !self.children(id).is_empty()
@@ -310,7 +311,7 @@ impl TreeDrawing {
     }
 }
 
-/// Which states are drawn.
+/// Returns which states are drawn.
 fn shown(index: &TreeIndex, is_folded: &dyn Fn(TreeNodeId) -> bool) -> Vec<bool> {
     let mut is_shown = vec![false; index.below.len()];
     let mut pending = vec![0];
@@ -330,7 +331,7 @@ struct Outline {
     shift: f32,
 }
 
-/// How far each state stands to the right of its parent.
+/// Returns how far each state stands to the right of its parent.
 fn offsets(index: &TreeIndex, is_shown: &[bool]) -> Vec<f32> {
     let count = is_shown.len();
     let mut offsets = vec![0.0_f32; count];
@@ -369,7 +370,7 @@ fn offsets(index: &TreeIndex, is_shown: &[bool]) -> Vec<f32> {
     offsets
 }
 
-/// How far `right` has to be moved so that it stands one cell beside `left` in every row that both have.
+/// Returns how far `right` has to be moved so that it stands one cell beside `left` in every row that both have.
 fn gap(left: &Outline, right: &Outline) -> f32 {
     let pairs = left.rows.iter().rev().zip(right.rows.iter().rev());
     let needed =

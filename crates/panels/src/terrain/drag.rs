@@ -64,13 +64,13 @@ impl Dragged {
 }
 
 impl Drag {
-    /// Whether the place under the pointer is where a vehicle will start.
+    /// Returns whether the place under the pointer is where a vehicle will start.
     pub fn is_start(&self) -> bool {
         matches!(self.what, Dragged::Vehicle(_))
     }
 }
 
-/// Whether dragging at a point of the window would move something.
+/// Returns whether dragging at a point of the window would move something.
 pub fn is_draggable(pointer: Pos2, scene: &Scene<'_>) -> bool {
     scene.pick_handle(pointer).and_then(|handle| Dragged::of(&handle, scene)).is_some()
 }
@@ -133,7 +133,7 @@ fn drop_vehicle(vehicle: SmolStr, pointer: Pos2, scene: &Scene<'_>, commands: &m
     }
 }
 
-/// Where a vehicle that is put down at a point of the window starts: at the location there, or on the ground.
+/// Returns where a vehicle that is put down at a point of the window starts: at the location there, or on the ground.
 pub fn start_at(pointer: Pos2, scene: &Scene<'_>) -> Option<VehicleStart> {
     if let Some(location) = scene.pick_location(pointer) {
         return Some(VehicleStart::Location(location));
@@ -142,7 +142,7 @@ pub fn start_at(pointer: Pos2, scene: &Scene<'_>) -> Option<VehicleStart> {
     Some(VehicleStart::Ground(Point2::new(f64::from(at.x), f64::from(at.y))))
 }
 
-/// Whether a vehicle has not left its start at the time shown.
+/// Returns whether a vehicle has not left its start at the time shown.
 fn is_at_start(scene: &Scene<'_>, name: &str) -> bool {
     let world = &scene.snapshot.program.world;
     let Some(index) = world.vehicles.iter().position(|it| it.name.text == name) else { return false };

@@ -62,14 +62,14 @@ impl Overlay<'_> {
         self.context.tokens
     }
 
-    /// Where a place appears in the window.
+    /// Returns where a place appears in the window.
     pub fn at(&self, point_m: Vec3) -> Option<Pos2> {
         let size = Vec2::new(self.rect.width(), self.rect.height());
         let point = self.camera.project(point_m, size)?;
         Some(self.rect.min + vec2(point.x, point.y))
     }
 
-    /// Where the images of vehicles are in the window, by their index; `None` for those that are not seen.
+    /// Returns where the images of vehicles are in the window, by their index; `None` for those that are not seen.
     fn vehicle_images(&self) -> Vec<Option<Rect>> {
         let image = |vehicle| {
             let corners_m = scene::vehicle_box_m(&scene::VehicleBox {

@@ -32,9 +32,9 @@ pub enum Rank {
 /// Between plates, and between a plate and what it names.
 const GAP: f32 = 3.0;
 
-/// Where the plates of labels go: each beside what it names, inside `room`, over no other and over nothing that is
-/// `taken`, such as a vehicle; `None` for names that are left out because there is no place for them. `sizes` are those of
-/// the plates.
+/// Returns where the plates of labels go: each beside what it names, inside `room`, over no other and over nothing that
+/// is `taken`, such as a vehicle; `None` for names that are left out because there is no place for them. `sizes` are
+/// those of the plates.
 pub fn arrange(room: Rect, labels: &[Label], sizes: &[Vec2], taken: &[Rect]) -> Vec<Option<Rect>> {
     let mut order: Vec<usize> = (0..labels.len()).collect();
     order.sort_by_key(|&index| (labels[index].rank, index));

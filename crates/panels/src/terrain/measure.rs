@@ -54,14 +54,14 @@ impl Measurement {
         }
     }
 
-    /// How far along the line the view is blocked, and where.
+    /// Returns how far along the line the view is blocked, and where.
     fn blocked(&self) -> Option<(f64, Point3<f64>)> {
         let at = self.sight.blocked_at_m?;
         let [from, _] = self.ends_m;
         Some((distance(&from, &at.xy()), at))
     }
 
-    /// What to draw on the ground.
+    /// Returns what to draw on the ground.
     pub fn sketch(&self, ground: &Ground, height_scale: f32) -> Sketch {
         let ends = self.ends_m.map(place);
         let eyes = ends.map(|end| ground.drape(end, EYE_HEIGHT_M as f32 * height_scale));

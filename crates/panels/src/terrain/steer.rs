@@ -185,7 +185,7 @@ impl TerrainPanel {
     }
 }
 
-/// What a camera on the mast of a vehicle sees ahead.
+/// Returns what a camera on the mast of a vehicle sees ahead.
 fn onboard(ground: &Ground, snapshot: &Snapshot, index: usize, time: f64) -> Option<Camera> {
     let world = &snapshot.program.world;
     let vehicle = world.vehicles.get(index)?;

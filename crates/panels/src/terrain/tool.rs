@@ -123,7 +123,7 @@ fn drawn_wall(response: &Response, scene: &Scene<'_>, from: Option<Vec2>) -> Opt
     Some([meters(from), meters(to)])
 }
 
-/// How thick a wall is that is drawn, in meters: it must not slip between the cells of the map.
+/// Returns how thick a wall is that is drawn, in meters: it must not slip between the cells of the map.
 fn thickness_m(scene: &Scene<'_>) -> f64 {
     WALL_M.max(WALL_CELLS * f64::from(scene.ground.cell_m))
 }
@@ -184,7 +184,7 @@ pub fn sketch(
     }
 }
 
-/// What the tool waits for, in words.
+/// Returns what the tool waits for, in words.
 pub fn hint(tool: &Tool, points: usize) -> Option<String> {
     Some(match tool {
         Tool::Look => return None,

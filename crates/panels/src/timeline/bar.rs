@@ -5,7 +5,7 @@ use tpn::{Network, NodeId, Plan};
 use workbench::state::Selection;
 use workbench::time_text;
 
-/// What a click on a bar selects.
+/// Returns what a click on a bar selects.
 pub(super) fn selection(bar: &Bar, network: &Network) -> Selection {
     match (bar.occurrence, bar.label) {
         (Some(occurrence), _) if bar.is_complete(network) => Selection::Occurrence(occurrence),

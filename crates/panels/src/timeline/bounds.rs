@@ -136,7 +136,7 @@ impl BoundDrag {
     }
 }
 
-/// Where one side of `[lower, upper]` at `span` is written, and its value, if it is a plain number.
+/// Returns where one side of `[lower, upper]` at `span` is written, and its value, if it is a plain number.
 fn literal(source: &str, span: Span, is_upper: bool) -> Option<(Range<usize>, Time)> {
     let text = source.get(span.range())?;
     let inside = text.strip_prefix('[')?.strip_suffix(']')?;

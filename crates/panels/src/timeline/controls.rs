@@ -168,7 +168,7 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-/// What can be switched on and off, with its name and what it means.
+/// Returns what can be switched on and off, with its name and what it means.
 fn all(view: &mut TimelineView) -> [(&mut bool, &'static str, &'static str); 5] {
     [
         (&mut view.delays, "Delays", "Delays as bars"),

@@ -213,7 +213,7 @@ fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, i
     painter.rect(grip, 2.5, tokens.surface, line, StrokeKind::Middle);
 }
 
-/// What the timeline says of the pins: how many there are, or which event is held.
+/// Returns what the timeline says of the pins: how many there are, or which event is held.
 pub(super) fn summary(context: &Context<'_>) -> Option<String> {
     match context.state.pins.all().len() {
         0 if !context.state.pins.is_empty() => Some("controllability run in progress".to_owned()),

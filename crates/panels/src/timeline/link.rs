@@ -21,7 +21,7 @@ pub(super) fn at<'a>(curves: &[LinkCurve<'a>], pointer: Pos2) -> Option<&'a Link
     nearest.filter(|(distance, _)| *distance <= REACH).min_by(|a, b| a.0.total_cmp(&b.0)).map(|it| it.1)
 }
 
-/// What a click on a link selects.
+/// Returns what a click on a link selects.
 pub(super) fn selection(kind: LinkKind, network: &Network) -> Selection {
     match kind {
         LinkKind::Causal(link) => Selection::Link(link),
@@ -33,7 +33,7 @@ pub(super) fn selection(kind: LinkKind, network: &Network) -> Selection {
     }
 }
 
-/// What a link is called.
+/// Returns what a link is called.
 pub(super) fn name(kind: LinkKind, network: &Network) -> String {
     match kind {
         LinkKind::UseOrdering(ordering) => {
@@ -44,7 +44,7 @@ pub(super) fn name(kind: LinkKind, network: &Network) -> String {
     }
 }
 
-/// Whether a link, or a bar at one of its ends, is selected or pointed at.
+/// Returns whether a link, or a bar at one of its ends, is selected or pointed at.
 pub(super) fn is_chosen(painting: &Painting<'_>, link: &Link) -> bool {
     let (state, own) = (painting.context.state, selection(link.kind, painting.network));
     let touches = |chosen: &Selection| {

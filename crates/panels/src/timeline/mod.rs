@@ -650,7 +650,7 @@ fn show_connector(ui: &Ui, painting: &Painting<'_>, (row, bar): (usize, &Bar)) {
     carry::connector(ui, painting.context, end, painting.visible, (span, &name));
 }
 
-/// What is selected can be carried to another activity; a drag of anything else moves the view.
+/// Returns what is selected can be carried to another activity; a drag of anything else moves the view.
 fn sense(is_selected: bool) -> Sense {
     if is_selected { Sense::click_and_drag() } else { Sense::click() }
 }
@@ -734,7 +734,7 @@ fn respond(
     is_hovered
 }
 
-/// Whether a selection is about a bar: its occurrence, its condition, or a link or an ordering that ends at it.
+/// Returns whether a selection is about a bar: its occurrence, its condition, or a link or an ordering that ends at it.
 fn is_chosen(bar: &Bar, selection: &Selection, network: &Network) -> bool {
     let is_of = |label: LabelId| {
         if let Some(own) = bar.label {

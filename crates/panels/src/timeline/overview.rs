@@ -53,7 +53,7 @@ fn parts(from: f64, to: f64) -> u64 {
     (u64::MAX >> (63 - (to - from))) << from
 }
 
-/// Where the column is in a timeline with rows of this height in all, if it has one.
+/// Returns where the column is in a timeline with rows of this height in all, if it has one.
 pub(super) fn place(timeline: Rect, top: f32, height: f32) -> Option<Rect> {
     let is_long = height > MIN_PAGES * (timeline.bottom() - top);
     (is_long && timeline.width() >= MIN_ROOM).then(|| {

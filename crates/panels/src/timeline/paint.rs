@@ -34,7 +34,7 @@ pub(super) struct Painting<'a> {
     pub(super) place: Track,
 }
 
-/// Where times and rows are, for a display list whose frame is the screen.
+/// Returns where times and rows are, for a display list whose frame is the screen.
 pub(super) fn place(view: &TimeView, track: Rect, visible: Rect, names_left: f32) -> Track {
     Track {
         frame: drawn(Rect::from_min_max(pos2(names_left, visible.top()), visible.max)),
@@ -77,7 +77,7 @@ impl Painting<'_> {
         Placement::SCREEN.screen_rect(self.place.row(index))
     }
 
-    /// Where a time is.
+    /// Returns where a time is.
     pub(super) fn x(&self, time: f64) -> f32 {
         self.place.x(time) as f32
     }
@@ -92,7 +92,7 @@ impl Painting<'_> {
         Placement::SCREEN.screen_rect(self.place.bar(bar, self.place.row(index)))
     }
 
-    /// Where the sign is that opens and closes a row.
+    /// Returns where the sign is that opens and closes a row.
     pub(super) fn sign_rect(&self, index: usize) -> Rect {
         let shown = &self.chart.rows[index];
         Placement::SCREEN.screen_rect(self.place.sign(shown, self.place.row(index)))

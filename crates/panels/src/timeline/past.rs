@@ -7,7 +7,7 @@ use layout::timeline::Past;
 use snapshot::Execution;
 use tpn::{OccurrenceId, OccurrenceKind};
 
-/// What of `run` had started before it replanned, and is not in the plan that is followed at `time`.
+/// Returns what of `run` had started before it replanned, and is not in the plan that is followed at `time`.
 pub(super) fn of_run(run: &Execution, time: f64) -> Vec<Past> {
     let Some((number, now)) = run.plan_at(time) else { return Vec::new() };
     let ids: BTreeMap<&str, OccurrenceId> = (0..now.network.occurrences.len())

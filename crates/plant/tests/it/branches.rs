@@ -9,7 +9,7 @@ use plant::{
 
 use crate::estimation::{model, random_model};
 
-/// What follows from one state: the probabilities before the observation, and whether it can be made.
+/// Returns what follows from one state: the probabilities before the observation, and whether it can be made.
 fn successors(
     model: &Model,
     state: &State,

@@ -163,7 +163,7 @@ fn by_enumeration(
     posterior
 }
 
-/// How likely all components are to move from their modes to those of `after`, each by itself.
+/// Returns how likely all components are to move from their modes to those of `after`, each by itself.
 fn chance(model: &Model, before: &State, after: &State, commands: &plant::Commands) -> BigRational {
     let mut product = BigRational::from_integer(1.into());
     for (at, component) in model.components.iter().enumerate() {

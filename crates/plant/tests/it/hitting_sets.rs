@@ -5,8 +5,8 @@ use plant::{ComponentId, Model, Observation, Random, State, conflicts};
 
 use crate::estimation::{admitted_observations, model, random_model};
 
-/// Whether the modes of these components and an observation can hold together, by trying all values of all variables.
-/// Of the other components nothing is assumed.
+/// Returns whether the modes of these components and an observation can hold together, by trying all values of all
+/// variables. Of the other components nothing is assumed.
 fn can_hold(model: &Model, modes: &State, assumed: &[ComponentId], observation: &Observation) -> bool {
     let mut free = model.clone();
     for (at, component) in free.components.iter_mut().enumerate() {

@@ -192,7 +192,7 @@ fn random_condition(model: &Model, random: &mut Random, depth: u32) -> Formula {
     }
 }
 
-/// Whether a formula is true under values of modes and variables.
+/// Returns whether a formula is true under values of modes and variables.
 fn is_true(model: &Model, condition: &Formula, state: &State, values: &[u8]) -> bool {
     match condition {
         Formula::Constant(value) => *value,
@@ -206,7 +206,7 @@ fn is_true(model: &Model, condition: &Formula, state: &State, values: &[u8]) -> 
     }
 }
 
-/// Whether a condition holds in a state, by trying all values of all variables.
+/// Returns whether a condition holds in a state, by trying all values of all variables.
 fn is_entailed(model: &Model, condition: &Formula, state: &State, observation: &Observation) -> bool {
     let counts: Vec<u64> = model.variables.iter().map(|variable| variable.values.len() as u64).collect();
     (0..counts.iter().product::<u64>()).all(|number| {

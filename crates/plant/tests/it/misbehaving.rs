@@ -25,7 +25,7 @@ fn found(text: &str) -> Vec<(&'static str, String)> {
     found.map(|found| (found.code.0, found.message)).collect()
 }
 
-/// Where one component goes in a step from a mode, by names.
+/// Returns where one component goes in a step from a mode, by names.
 fn moves(text: &str, from: &str, commands: &[(&str, &str)]) -> BTreeMap<String, String> {
     let model = model(text);
     let name = model.components[0].name.to_string();
@@ -359,7 +359,7 @@ fn is_true(formula: &Formula, state: &[u8], values: &[u8], commands: &[u8]) -> b
     }
 }
 
-/// How likely a component is to move to a mode, by the sentences of the specification.
+/// Returns how likely a component is to move to a mode, by the sentences of the specification.
 fn chance(model: &Model, at: usize, before: &[u8], to: u8, commands: &[u8]) -> BigRational {
     let mode = &model.components[at].modes[usize::from(before[at])];
     let worlds = worlds(model, before);
@@ -387,7 +387,8 @@ fn chance(model: &Model, at: usize, before: &[u8], to: u8, commands: &[u8]) -> B
     }
 }
 
-/// How likely an observation is in a state: true values of what is read are equally likely, and errors come after that.
+/// Returns how likely an observation is in a state: true values of what is read are equally likely, and errors come
+/// after that.
 fn likelihood(model: &Model, state: &[u8], observation: &Observation) -> BigRational {
     let read: std::collections::BTreeSet<Vec<u8>> = worlds(model, state)
         .into_iter()

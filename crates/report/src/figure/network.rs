@@ -155,7 +155,8 @@ fn svg(
     display::svg(&[&list, &changes], Theme::Light, title)
 }
 
-/// Whether one end of a causal link or an ordering at least is not a box: between boxes they would only hide the rest.
+/// Returns whether one end of a causal link or an ordering at least is not a box: between boxes they would only hide
+/// the rest.
 fn has_drawn_end(curve: &OverlayCurve, drawing: &NetworkDrawing, (network, plan): (&Network, &Plan)) -> bool {
     let number = curve.number as usize;
     let ends = match curve.kind {

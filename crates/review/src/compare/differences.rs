@@ -158,7 +158,7 @@ fn reversed(before: &Side, after: &Side) -> Vec<Difference> {
     found
 }
 
-/// How far resources are used, and what the plans are worth.
+/// Returns how far resources are used, and what the plans are worth.
 fn figures(before: &Side, after: &Side) -> Vec<Difference> {
     names(&before.figures, &after.figures)
         .into_iter()

@@ -132,12 +132,12 @@ pub struct PathPair {
 }
 
 impl Comparison {
-    /// How many differences there are of each kind, in the order of [`Change::ALL`].
+    /// Returns how many differences there are of each kind, in the order of [`Change::ALL`].
     pub fn counts(&self) -> [usize; 5] {
         Change::ALL.map(|change| self.differences.iter().filter(|it| it.change == change).count())
     }
 
-    /// Whether the plans are the same in everything that is compared.
+    /// Returns whether the plans are the same in everything that is compared.
     pub fn is_same(&self) -> bool {
         self.differences.is_empty()
     }

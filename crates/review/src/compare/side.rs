@@ -198,7 +198,7 @@ fn figures(plan: &Value) -> BTreeMap<String, String> {
     levels.chain(worth).chain(length).collect()
 }
 
-/// What happens in a plan's JSON: whatever has a window for its start and one for its end.
+/// Returns what happens in a plan's JSON: whatever has a window for its start and one for its end.
 fn items(plan: &Value) -> Result<BTreeMap<String, Item>, SideError> {
     let primitives: BTreeSet<&str> = list(plan, "activities").iter().filter_map(Value::as_str).collect();
     let mut ends: BTreeMap<&str, [Option<Window>; 2]> = BTreeMap::new();
@@ -260,7 +260,7 @@ const fn subject(kind: OccurrenceKind) -> Subject {
 /// Characters of an alternative that are shown.
 const LONGEST_BEGINNING: usize = 48;
 
-/// How the text of an alternative begins.
+/// Returns how the text of an alternative begins.
 fn beginning(network: &Network, source: &str, choice: tpn::Choice) -> String {
     let decision = network.decisions.get(choice.decision.index());
     let span = decision.and_then(|it| it.alternative_spans.get(choice.alternative as usize));

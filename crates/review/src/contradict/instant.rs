@@ -128,7 +128,7 @@ impl Instant<'_> {
         start <= self.at && end.is_none_or(|end| self.at < end || (self.touches && self.at == end))
     }
 
-    /// Whether a condition is known to hold, and whether its negation is. Strictly, what both touch is neither.
+    /// Returns whether a condition is known to hold, and whether its negation is. Strictly, what both touch is neither.
     fn known(&self, formula: &Formula, is_strict: bool) -> (bool, bool) {
         match formula {
             Formula::Not(inner) => {
@@ -268,7 +268,7 @@ impl Instant<'_> {
     }
 }
 
-/// What holds and what does not where something both holds and does not: neither, if it has to be strict.
+/// Returns what holds and what does not where something both holds and does not: neither, if it has to be strict.
 const fn strictly(is_strict: bool, (yes, no): (bool, bool)) -> (bool, bool) {
     if is_strict && yes && no { (false, false) } else { (yes, no) }
 }

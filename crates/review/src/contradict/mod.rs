@@ -77,7 +77,7 @@ impl Default for Effort {
 }
 
 impl Tried {
-    /// How it came out.
+    /// Returns how it came out.
     pub const fn verdict(&self) -> Verdict {
         match (&self.counterexample, self.schedules + self.runs + self.plans) {
             (Some(_), ..) => Verdict::Contradicted,
@@ -86,7 +86,7 @@ impl Tried {
         }
     }
 
-    /// How it was tried: `200 schedules and 20 runs`; empty if it was not.
+    /// Returns how it was tried: `200 schedules and 20 runs`; empty if it was not.
     pub fn how(&self) -> String {
         let counted = |count: u64, one: &str, several: &str| match count {
             0 => None,
@@ -101,7 +101,7 @@ impl Tried {
         parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
     }
 
-    /// How it came out and how it was tried, in one sentence without an end.
+    /// Returns how it came out and how it was tried, in one sentence without an end.
     pub fn sentence(&self) -> String {
         match (self.verdict(), &self.counterexample) {
             (Verdict::Contradicted, Some(found)) if found.script == Script::default() => {
@@ -189,7 +189,7 @@ impl Trial {
         })
     }
 
-    /// How many schedules and runs have been made, and how many are to be made.
+    /// Returns how many schedules and runs have been made, and how many are to be made.
     pub const fn progress(&self) -> [u64; 2] {
         let Effort { schedules, runs, .. } = self.effort;
         [self.num_schedules + self.num_runs, schedules + runs]
@@ -266,7 +266,7 @@ impl Trial {
         script
     }
 
-    /// Whether other plans are still to be compared with the plan, for a line without a counterexample.
+    /// Returns whether other plans are still to be compared with the plan, for a line without a counterexample.
     pub fn wants_plans(&self) -> bool {
         let is_open = |(promise, it): &(Promise, Tried)| it.counterexample.is_none() && promise.is_of_plans();
         !self.has_plans && self.lines.iter().any(is_open)

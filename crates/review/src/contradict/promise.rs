@@ -57,7 +57,7 @@ pub(super) struct Performed {
 }
 
 impl Promise {
-    /// What a line of a review promises.
+    /// Returns what a line of a review promises.
     pub(super) fn of_line(
         snapshot: &Snapshot,
         (network, plan): (&Network, &Plan),
@@ -134,7 +134,7 @@ impl Promise {
         found.unwrap_or(Self::Nothing)
     }
 
-    /// What a section promises that has passed because it has no lines.
+    /// Returns what a section promises that has passed because it has no lines.
     pub(super) const fn of_nothing(section: Section) -> Self {
         match section {
             Section::Conflicts => Self::Valid,
@@ -144,8 +144,8 @@ impl Promise {
         }
     }
 
-    /// What a line about a state, or about the movements of a vehicle, promises: its changes are the plan's, in its order. A
-    /// line without any is about all requirements.
+    /// Returns what a line about a state, or about the movements of a vehicle, promises: its changes are the plan's, in
+    /// its order. A line without any is about all requirements.
     fn of_state(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
         if line.nodes.is_empty() {
             return Some(Self::Valid);
@@ -201,7 +201,7 @@ impl Promise {
         Some(Self::InOrder { variable: network.variables[variable].name.clone(), nodes, by })
     }
 
-    /// What a line about what a vehicle sees promises.
+    /// Returns what a line about what a vehicle sees promises.
     fn of_sight(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
         plan.causal_links.iter().find_map(|link| {
             let (vehicle, location, is_seen) = required_sight(network, link.ask)?;
@@ -217,7 +217,7 @@ impl Promise {
         })
     }
 
-    /// Whether a schedule says something of it.
+    /// Returns whether a schedule says something of it.
     pub(super) const fn is_of_schedules(&self) -> bool {
         !matches!(
             self,
@@ -231,17 +231,17 @@ impl Promise {
         )
     }
 
-    /// Whether a run says something of it.
+    /// Returns whether a run says something of it.
     pub(super) const fn is_of_runs(&self) -> bool {
         !matches!(self, Self::Valid | Self::DeclaredDurations | Self::Optimal | Self::Nothing)
     }
 
-    /// Whether another plan says something of it.
+    /// Returns whether another plan says something of it.
     pub(super) const fn is_of_plans(&self) -> bool {
         matches!(self, Self::Optimal)
     }
 
-    /// What contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.
+    /// Returns what contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.
     #[expect(clippy::option_option, reason = "the outer one is what schedules say nothing of")]
     pub(super) fn broken_by_schedule(&self, of: Scheduled<'_>) -> Option<Option<String>> {
         match self {
@@ -287,13 +287,13 @@ impl Promise {
         }
     }
 
-    /// Whether it says that nothing goes wrong in a run, and so still holds or not after something has.
+    /// Returns whether it says that nothing goes wrong in a run, and so still holds or not after something has.
     pub(super) const fn is_of_whole_runs(&self) -> bool {
         matches!(self, Self::Runs | Self::NoContact)
     }
 
-    /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it. `executed` is the
-    /// plan at the times of the run, if the run kept it.
+    /// Returns what contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it.
+    /// `executed` is the plan at the times of the run, if the run kept it.
     #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
     pub(super) fn broken_by_run(
         &self,
@@ -417,7 +417,7 @@ fn names(network: &Network, plan: &Plan, node: NodeId) -> Vec<String> {
     events.filter(|&&event| plan.has_event(network, event)).map(|&event| network.event_name(event)).collect()
 }
 
-/// What of a run changes a variable otherwise than in this order.
+/// Returns what of a run changes a variable otherwise than in this order.
 fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[(usize, String)]) -> Option<String> {
     let mut next = 0;
     for entry in log {

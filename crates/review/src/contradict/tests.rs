@@ -62,7 +62,7 @@ fn run(source: &str, change: impl FnOnce(&mut Review)) -> (Vec<Tried>, Core, Eva
     (trial.tried().cloned().collect(), core, evaluated)
 }
 
-/// What happens in the run of a script.
+/// Returns what happens in the run of a script.
 fn replayed(core: &mut Core, evaluated: &Evaluated, script: &Script) -> (Vec<executive::Entry>, Ending) {
     evaluated.compiled.check_script(script).expect("it is about this mission");
     let ran = core.run(evaluated, script).expect("a plan").expect("its times fit");

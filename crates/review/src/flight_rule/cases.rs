@@ -20,7 +20,7 @@ pub(super) enum Condition {
 }
 
 impl Condition {
-    /// What is met exactly where this is not.
+    /// Returns what is met exactly where this is not.
     pub(super) fn negated(self) -> Self {
         let all = |parts: Vec<Self>| parts.into_iter().map(Self::negated).collect();
         match self {

@@ -45,7 +45,7 @@ impl Edge {
         Self { offset, ..self }
     }
 
-    /// What is so exactly where this is not.
+    /// Returns what is so exactly where this is not.
     pub(super) const fn negated(self) -> Self {
         Self { is_past: !self.is_past, may_touch: !self.may_touch, ..self }
     }
@@ -80,7 +80,7 @@ impl Times {
         self.network.scale().ticks(time).ok()
     }
 
-    /// How much later than `from` the event `to` can be at most; `None` for any time.
+    /// Returns how much later than `from` the event `to` can be at most; `None` for any time.
     fn most(&mut self, from: NodeId, to: NodeId) -> Option<i64> {
         let point = self.network.point(to)?;
         if !self.rows.contains_key(&from) {
@@ -96,7 +96,7 @@ impl Times {
         (distance != INFINITE).then_some(distance)
     }
 
-    /// Whether an instant can lie between an event that has come and one that is to come.
+    /// Returns whether an instant can lie between an event that has come and one that is to come.
     pub(super) fn fits(&mut self, past: Edge, future: Edge) -> bool {
         match self.most(past.node, future.node) {
             None => true,

@@ -167,8 +167,8 @@ fn resource(network: &Network, plan: &Plan, index: usize) -> Resource {
     }
 }
 
-/// Where a rule of a mission looks at instants; `None` if times are too large. `occurrences` are the activities that its
-/// moment is about, and `ticks` tells a time in ticks.
+/// Returns where a rule of a mission looks at instants; `None` if times are too large. `occurrences` are the activities
+/// that its moment is about, and `ticks` tells a time in ticks.
 pub(super) fn places<'network>(
     network: &Network,
     moment: &Moment,

@@ -46,7 +46,7 @@ pub fn evaluate_plan(
     findings
 }
 
-/// What is found of one rule; an outcome alone where there are no times to tell.
+/// Returns what is found of one rule; an outcome alone where there are no times to tell.
 fn finding(
     program: &Program,
     network: &Network,
@@ -79,7 +79,7 @@ pub(super) fn read(program: &Program, network: &Network, text: &str) -> Result<R
     rmpl::rule::read(text, program, undeclared)
 }
 
-/// What is wrong with a rule in a mission, if something is; [`Outcome::Unreadable`].
+/// Returns what is wrong with a rule in a mission, if something is; [`Outcome::Unreadable`].
 pub fn problem(program: &Program, network: &Network, text: &str) -> Option<Outcome> {
     read(program, network, text).err().map(|found| unreadable(text, &found))
 }
@@ -93,7 +93,7 @@ fn unreadable(text: &str, found: &[Diagnostic]) -> Outcome {
     }
 }
 
-/// Which character of a text begins at a byte, from 1.
+/// Returns which character of a text begins at a byte, from 1.
 fn column(text: &str, at: u32) -> u32 {
     text.get(..at as usize).map_or(1, |before| before.chars().count() as u32 + 1)
 }

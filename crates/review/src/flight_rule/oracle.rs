@@ -207,8 +207,8 @@ impl Instant<'_> {
         level
     }
 
-    /// Whether it is known to hold, and whether its negation is; what both sides of a moment touch is neither inside of a
-    /// `not`, and where a rule is looked at.
+    /// Returns whether it is known to hold, and whether its negation is; what both sides of a moment touch is neither
+    /// inside of a `not`, and where a rule is looked at.
     fn known(&self, formula: &Formula, is_strict: bool) -> (bool, bool) {
         match formula {
             Formula::Not(inner) => {

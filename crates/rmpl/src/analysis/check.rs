@@ -86,7 +86,7 @@ pub(crate) struct Meaning<'a> {
 }
 
 impl Meaning<'_> {
-    /// Whether a variable is the state of a component that the plant does not have, which has been reported.
+    /// Returns whether a variable is the state of a component that the plant does not have, which has been reported.
     pub(crate) fn is_unknown_component(&self, variable: Symbol) -> bool {
         let definition = self.index.definition(Namespace::Variable, variable);
         definition.is_some_and(|definition| definition.is_from_plant && definition.values.is_empty())
@@ -105,14 +105,14 @@ impl Meaning<'_> {
         self.index.equipment(self.names, variable).filter(|own| own.initial.is_some())
     }
 
-    /// Whether a declared variable keeps its value until something changes it.
+    /// Returns whether a declared variable keeps its value until something changes it.
     pub(crate) fn is_state(&self, variable: Symbol) -> bool {
         let definition = self.index.definition(Namespace::Variable, variable);
         definition.is_some_and(|definition| definition.initial.is_some() || definition.is_from_plant)
             || self.own_state(variable).is_some()
     }
 
-    /// Whether `X_V`, with `X` and `V` given, is about `X` (SPEC 1.3).
+    /// Returns whether `X_V`, with `X` and `V` given, is about `X` (SPEC 1.3).
     pub(crate) fn splits(&self, whole: Symbol, (variable, value): (Symbol, Symbol)) -> bool {
         self.domain(whole).is_none()
             && match self.domain(variable) {
@@ -163,7 +163,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Whether the one thing that is said of a name has been said in this declaration.
+    /// Returns whether the one thing that is said of a name has been said in this declaration.
     pub(super) fn is_told(&self, namespace: Namespace, name: Symbol) -> bool {
         self.told.contains(&(namespace, name))
     }

@@ -187,7 +187,7 @@ impl Index {
         self.facts.get(symbol.index()).unwrap_or(&NOTHING)
     }
 
-    /// Whether the plant has a component with a state of this name.
+    /// Returns whether the plant has a component with a state of this name.
     pub(crate) fn has_component(&self, state: Symbol) -> bool {
         self.components.contains_key(&state)
     }
@@ -201,7 +201,7 @@ impl Index {
         self.strict > 0
     }
 
-    /// Whether the environment chooses some duration of the file.
+    /// Returns whether the environment chooses some duration of the file.
     pub(crate) const fn has_contingents(&self) -> bool {
         self.contingents > 0
     }
@@ -223,7 +223,7 @@ impl Index {
         self.free_keys.extend(keys);
     }
 
-    /// How many keys were ever given out.
+    /// Returns how many keys were ever given out.
     pub(crate) fn keys(&self) -> usize {
         self.definitions.len()
     }
@@ -234,7 +234,7 @@ impl Index {
         own.iter().find(|definition| definition.namespace == namespace && definition.name == symbol)
     }
 
-    /// What a name with a dot, such as `R1.battery`, is in the vehicle's model or in one that it extends.
+    /// Returns what a name with a dot, such as `R1.battery`, is in the vehicle's model or in one that it extends.
     pub(crate) fn equipment(&self, names: &Names, symbol: Symbol) -> Option<&Equipment> {
         let (owner, part) = names.text(symbol).split_once('.')?;
         let part = names.find(part)?;
@@ -295,7 +295,7 @@ impl Index {
         names.nearest(written, alphabet.around(names, names.text(written)))
     }
 
-    /// Whether something that the check depended on has changed since revision `at`.
+    /// Returns whether something that the check depended on has changed since revision `at`.
     pub(crate) fn is_stale(&self, summary: &Summary, at: u32, depends_on_names: u16) -> bool {
         let newer = |symbol: Symbol| self.facts(symbol).changed_at > at;
         let has_new_names = |(namespace, &changed_at): (usize, &u32)| {
@@ -306,12 +306,12 @@ impl Index {
             || summary.symbols().any(newer)
     }
 
-    /// Whether the last exchange changed anything that checks of other declarations can see.
+    /// Returns whether the last exchange changed anything that checks of other declarations can see.
     pub(crate) const fn has_changed(&self) -> bool {
         self.last_change == self.revision
     }
 
-    /// Whether who calls whom has changed since this was asked last.
+    /// Returns whether who calls whom has changed since this was asked last.
     pub(crate) fn take_calls_changed(&mut self) -> bool {
         std::mem::take(&mut self.calls_changed)
     }
@@ -405,7 +405,7 @@ impl Index {
         }
     }
 
-    /// What every check can see.
+    /// Returns what every check can see.
     const fn globals(&self) -> [bool; 6] {
         [
             self.scenarios > 0,
@@ -571,7 +571,7 @@ impl Facts {
 }
 
 impl Told {
-    /// What holds of a state variable at the scenario's start.
+    /// Returns what holds of a state variable at the scenario's start.
     pub(crate) const fn at_first(value: Symbol) -> Self {
         Self { value: Some(value), negated: false, is_split: false, is_any: false, is_watched: false }
     }

@@ -53,7 +53,8 @@ impl Checker<'_> {
         self.support(literal, variable, value);
     }
 
-    /// Whether `in visible(…)` follows the place of a vehicle and is a requirement, which is all that it can be.
+    /// Returns whether `in visible(…)` follows the place of a vehicle and is a requirement, which is all that it can
+    /// be.
     fn is_place_asked(&mut self, literal: &Literal) -> bool {
         let is_told = literal.mode == LabelMode::Tell && literal.origin == Origin::Written;
         let name = self.text(literal.variable);
@@ -258,7 +259,7 @@ impl Checker<'_> {
     }
 }
 
-/// Whether a variable of this domain that is not `denied` must be `asked`.
+/// Returns whether a variable of this domain that is not `denied` must be `asked`.
 fn leaves_only(domain: Option<&[Symbol]>, denied: Option<Symbol>, asked: Option<Symbol>) -> bool {
     let Some(&[one, other]) = domain else { return false };
     (denied, asked) == (Some(one), Some(other)) || (denied, asked) == (Some(other), Some(one))

@@ -81,7 +81,7 @@ impl Names {
     }
 }
 
-/// Which letters a name has: one edit changes at most two of the bits.
+/// Returns which letters a name has: one edit changes at most two of the bits.
 fn letters(text: &str) -> u64 {
     text.bytes().fold(0, |letters, byte| letters | 1 << (byte.to_ascii_lowercase() & 63))
 }

@@ -57,7 +57,7 @@ struct Structure<'a> {
 }
 
 impl Structure<'_> {
-    /// How long `statement` can take, as far as that is constant; reports what does not fit on the way.
+    /// Returns how long `statement` can take, as far as that is constant; reports what does not fit on the way.
     fn duration(&mut self, statement: &Statement) -> Interval {
         let is_leaf;
         let own = match &statement.kind {
@@ -166,7 +166,7 @@ impl Structure<'_> {
         definition.and_then(|definition| definition.bounds).unwrap_or(ANY)
     }
 
-    /// Whether a call or a name that represents one is of a primitive whose duration the environment chooses.
+    /// Returns whether a call or a name that represents one is of a primitive whose duration the environment chooses.
     fn is_contingent(&self, statement: &Statement) -> bool {
         let name = match &statement.kind {
             StatementKind::Call(name, _) => name,
@@ -259,7 +259,7 @@ impl Structure<'_> {
         }
     }
 
-    /// Whether the two can never hold together (SPEC 3.1).
+    /// Returns whether the two can never hold together (SPEC 3.1).
     fn conflict(&self, one: &Condition, other: &Condition) -> bool {
         let (Some(one), Some(other)) = (self.resolve(one), self.resolve(other)) else { return false };
         // What a state variable is before an instant and after it may differ.
@@ -303,7 +303,7 @@ impl Structure<'_> {
     }
 }
 
-/// How long so many copies of something take.
+/// Returns how long so many copies of something take.
 fn repeated(count: &Expr, (lower, upper): Interval) -> Interval {
     let Ok(count) = constant::evaluate(count) else { return ANY };
     let times = |bound: Bound| bound.times(count).ok();

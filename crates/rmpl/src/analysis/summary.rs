@@ -187,7 +187,7 @@ impl Summary {
         self.definition.iter().chain(&self.others)
     }
 
-    /// Whether names with a dot in other declarations may mean something else because of it.
+    /// Returns whether names with a dot in other declarations may mean something else because of it.
     pub(crate) fn equips(&self) -> bool {
         self.definitions().any(|definition| {
             definition.model.is_some()

@@ -10,7 +10,7 @@ use super::probabilities::{positive, weights};
 use super::suggest::nearest;
 use super::syntax::{ControlFile, Expression, ExpressionKind, Guard, Name};
 
-/// What is wrong with the lengths of a step that a text names.
+/// Returns what is wrong with the lengths of a step that a text names.
 pub(super) fn check_steps(file: &ControlFile) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
     for (at, step) in file.steps.iter().enumerate() {
@@ -27,7 +27,8 @@ pub(super) fn check_steps(file: &ControlFile) -> Vec<Diagnostic> {
     found
 }
 
-/// What is wrong with the numbers that an expression names itself; those that `is_open` says represent others are left out.
+/// Returns what is wrong with the numbers that an expression names itself; those that `is_open` says represent others
+/// are left out.
 pub(super) fn check_numbers(expression: &Expression, is_open: &dyn Fn(&Name) -> bool) -> Vec<Diagnostic> {
     let durations = expression.durations().into_iter().filter(|name| !is_open(name));
     let mut found: Vec<Diagnostic> = durations.filter_map(duration).collect();
@@ -62,7 +63,7 @@ pub(super) fn check_numbers(expression: &Expression, is_open: &dyn Fn(&Name) -> 
     found
 }
 
-/// What is wrong with the duration of a guard that is handed to a definition.
+/// Returns what is wrong with the duration of a guard that is handed to a definition.
 pub(super) fn check_held(guard: &Guard, is_open: &dyn Fn(&Name) -> bool) -> Option<Diagnostic> {
     let held = guard.held.as_ref().filter(|held| !is_open(&held.duration))?;
     duration(&held.duration)

@@ -42,7 +42,7 @@ fn unit_named(word: &str) -> Option<(&'static str, Rational)> {
     Some((name, unit.in_units(TimeUnit::Second)?))
 }
 
-/// Whether a word can only be a number or a duration, and no name.
+/// Returns whether a word can only be a number or a duration, and no name.
 pub(super) fn is_numeral(word: &str) -> bool {
     let first = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '/') || is_hyphen(c);
     word.starts_with(first) || word.parse::<exact::Bound>() == Ok(exact::Bound::Infinite)

@@ -123,7 +123,7 @@ fn canonical(kind: TokenKind, text: &str) -> String {
     }
 }
 
-/// Where the definition, form or comment that starts at `at` ends.
+/// Returns where the definition, form or comment that starts at `at` ends.
 fn unit_end(pieces: &[Piece], at: usize) -> usize {
     let Some(first) = pieces.get(at) else { return at };
     let mut end = at + first.length;

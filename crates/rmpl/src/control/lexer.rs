@@ -36,7 +36,7 @@ pub enum TokenKind {
 }
 
 impl TokenKind {
-    /// Whether the token carries no meaning: blanks and comments.
+    /// Returns whether the token carries no meaning: blanks and comments.
     pub const fn is_trivia(self) -> bool {
         matches!(self, Self::Whitespace | Self::Comment)
     }
@@ -69,7 +69,7 @@ pub fn lex(text: &str) -> Vec<Token> {
     tokens
 }
 
-/// Whether `character` is a hyphen, also as typesetting writes it.
+/// Returns whether `character` is a hyphen, also as typesetting writes it.
 pub(crate) const fn is_hyphen(character: char) -> bool {
     matches!(character, '-' | '\u{2010}' | '\u{2011}' | '\u{2012}' | '\u{2013}' | '\u{2212}' | '\u{ad}')
 }

@@ -62,7 +62,7 @@ pub struct ParsedControl {
 }
 
 impl ParsedControl {
-    /// Whether any diagnostic is an error.
+    /// Returns whether any diagnostic is an error.
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(|diagnostic| diagnostic.severity == crate::Severity::Error)
     }

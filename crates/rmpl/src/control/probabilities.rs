@@ -65,7 +65,7 @@ const fn greatest_common_divisor(left: u64, right: u64) -> u64 {
     if right == 0 { left } else { greatest_common_divisor(right, left % right) }
 }
 
-/// What is wrong with the options and priors of a file.
+/// Returns what is wrong with the options and priors of a file.
 pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     for (at, option) in file.options.iter().enumerate() {

@@ -9,7 +9,7 @@ use super::syntax::{Constraint, ConstraintKind};
 use super::tree::{List, Node};
 
 impl Reader<'_> {
-    /// Whether a list is a constraint rather than a form or call.
+    /// Returns whether a list is a constraint rather than a form or call.
     pub(super) fn is_constraint(&self, list: &List) -> bool {
         if list.items.iter().any(|node| is_leaf(node, TokenKind::Equals)) {
             return true;

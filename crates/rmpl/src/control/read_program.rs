@@ -51,7 +51,7 @@ fn starts_definition(items: &[Node], at: usize) -> bool {
         && matches!(items.get(at + 2), Some(Node::Leaf(token)) if token.kind == TokenKind::DoubleColon)
 }
 
-/// How many items belong to the definition, class, component or expression at the front.
+/// Returns how many items belong to the definition, class, component or expression at the front.
 fn unit_length(items: &[Node]) -> usize {
     if !starts_definition(items, 0) {
         // A guard's bar is before its list.

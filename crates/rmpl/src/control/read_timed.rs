@@ -12,7 +12,7 @@ use super::syntax::{Alternative, Expression, ExpressionKind, Guard, Held, Name};
 use super::tree::{List, Node};
 
 impl Reader<'_> {
-    /// Whether a list calls a definition of the text that is named like a form in time.
+    /// Returns whether a list calls a definition of the text that is named like a form in time.
     pub(super) fn calls_definition(&self, list: &List) -> bool {
         let word = list.items.first().and_then(|head| keyword::word(self.text, head));
         word.is_some_and(|(word, _)| {
@@ -212,7 +212,7 @@ impl Reader<'_> {
         Guard::unreadable(span)
     }
 
-    /// What stands side by side, each with the bar before it.
+    /// Returns what stands side by side, each with the bar before it.
     pub(super) fn parts_of(items: &[Node]) -> Vec<&[Node]> {
         let mut parts = Vec::with_capacity(items.len());
         let mut rest = items;

@@ -45,7 +45,7 @@ impl ControlFile {
         Duration::read(&self.steps.first()?.text).ok()?.seconds()
     }
 
-    /// How many seconds a step takes: as the text says, otherwise as its mission does, otherwise one.
+    /// Returns how many seconds a step takes: as the text says, otherwise as its mission does, otherwise one.
     pub fn step_secs(&self) -> Rational {
         self.own_step_secs().or(self.mission_step_secs).unwrap_or(Rational::ONE)
     }
@@ -217,7 +217,7 @@ impl Expression {
         }
     }
 
-    /// What it asks of the estimate itself.
+    /// Returns what it asks of the estimate itself.
     pub const fn guard(&self) -> Option<&Guard> {
         match &self.kind {
             ExpressionKind::IfThenNext { guard, .. }
@@ -229,7 +229,7 @@ impl Expression {
         }
     }
 
-    /// What it asserts itself.
+    /// Returns what it asserts itself.
     pub const fn asserted(&self) -> Option<&Constraint> {
         match &self.kind {
             ExpressionKind::Assert(constraint) | ExpressionKind::Lock { constraint, .. } => Some(constraint),

@@ -20,7 +20,7 @@ pub enum Node {
 }
 
 impl Node {
-    /// Where the node is.
+    /// Returns where the node is.
     pub const fn span(&self) -> Span {
         match self {
             Self::Leaf(token) => token.span,
@@ -185,7 +185,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether `NAME (…) ::`, `(DEFCLASS`, `(DEFINSTANCE`, `(DEFOPTION` or `(DEFSTEP` starts at token `at`, at a line's beginning.
+    /// Returns whether `NAME (…) ::`, `(DEFCLASS`, `(DEFINSTANCE`, `(DEFOPTION` or `(DEFSTEP` starts at token `at`, at
+    /// a line's beginning.
     fn starts_definition(&self, at: usize) -> bool {
         let Some(token) = self.tokens.get(at) else { return false };
         let at_line_start =

@@ -43,7 +43,7 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Where it is told: at its bounds, if they are written.
+    /// Returns where it is told: at its bounds, if they are written.
     pub fn place(&self) -> Span {
         self.bounds.1.unwrap_or(self.statement)
     }
@@ -69,7 +69,7 @@ pub enum Alternatives {
 /// So many of the statements of a branch are listed.
 const MAX_LISTED: usize = 4;
 
-/// What the statements of a branch leave to the plan, one after the other.
+/// Returns what the statements of a branch leave to the plan, one after the other.
 fn list(parts: &[String]) -> String {
     match parts {
         [shown @ .., last] if !shown.is_empty() && parts.len() <= MAX_LISTED => {

@@ -22,7 +22,8 @@ scenario Day[0,60] = { Group–Wait() }",
 scenario Day[0,60] = { Group-Wait() }",
 };
 
-/// What the lexer could not read, in the author's terms. `text` is the text that the problem's offsets count in.
+/// Returns what the lexer could not read, in the author's terms. `text` is the text that the problem's offsets count
+/// in.
 pub(crate) fn diagnostic(problem: LexProblem, text: &str) -> Diagnostic {
     let span = Span::new(problem.start, problem.end);
     let written = text.get(span.range()).unwrap_or("");

@@ -138,7 +138,7 @@ pub(crate) fn choice_asserted(span: Span) -> Diagnostic {
     )
 }
 
-/// What an activity requires leaves open which of several it is.
+/// Returns what an activity requires leaves open which of several it is.
 pub(crate) fn choice_required(span: Span) -> Diagnostic {
     error(span, "a primitive must require one condition, but this one allows several").with_hint(
         "for several values of one variable, write `X in {V, W}`; otherwise declare one primitive for each condition and \
@@ -213,7 +213,7 @@ pub(crate) fn constrain_in_block(span: Span) -> Diagnostic {
         .with_hint("name the occurrences with `as`, and move `constrain` after the block")
 }
 
-/// What is to be in sight is itself somewhere else at every time.
+/// Returns what is to be in sight is itself somewhere else at every time.
 pub(crate) fn sight_of_vehicle(span: Span) -> Diagnostic {
     error(span, "`visible(…)` needs a location, but a vehicle is at different ones over time").with_hint(
         "require each vehicle to see a location, or write one condition for each location: \

@@ -18,7 +18,7 @@ pub fn matching_bracket(parse: &Parse, offset: u32) -> Option<(Span, Span)> {
     at(offset).or_else(|| at(offset.checked_sub(1)?))
 }
 
-/// Which pair of brackets a token is of, and whether it opens.
+/// Returns which pair of brackets a token is of, and whether it opens.
 const fn role(kind: SyntaxKind) -> Option<(u8, bool)> {
     Some(match kind {
         SyntaxKind::LeftBrace => (0, true),

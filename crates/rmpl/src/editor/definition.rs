@@ -17,7 +17,7 @@ pub struct Reference {
     pub is_definition: bool,
 }
 
-/// Where the name at `offset` is declared; on a name that is declared there, that place itself.
+/// Returns where the name at `offset` is declared; on a name that is declared there, that place itself.
 pub fn definition(parse: &Parse, offset: u32) -> Option<Span> {
     if let Some(file) = imported_at(parse, offset) {
         return Some(file);
@@ -26,7 +26,7 @@ pub fn definition(parse: &Parse, offset: u32) -> Option<Span> {
     references_of(parse, &name).into_iter().find(|place| place.is_definition).map(|place| place.span)
 }
 
-/// Where the file begins that is imported at `offset`.
+/// Returns where the file begins that is imported at `offset`.
 fn imported_at(parse: &Parse, offset: u32) -> Option<Span> {
     let import = parse.declaration_at(offset)?.child(SyntaxKind::ImportDecl)?;
     let written = import.token(SyntaxKind::String).filter(|written| written.span.touches(offset))?;

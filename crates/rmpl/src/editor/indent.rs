@@ -49,7 +49,7 @@ pub fn new_line(parse: &Parse, selection: Span) -> (Edit, u32) {
     (Edit { span: Span::new(start, end), text: inserted }, cursor)
 }
 
-/// How many braces are open at `offset`, in its declaration.
+/// Returns how many braces are open at `offset`, in its declaration.
 fn open_braces(parse: &Parse, offset: u32) -> usize {
     // The end of a declaration may still be inside a brace that is not closed yet.
     let root = offset.checked_sub(1).and_then(|before| parse.declaration_at(before));

@@ -43,7 +43,7 @@ pub enum NameKind {
 }
 
 impl NameKind {
-    /// Whether the name means nothing outside its declaration.
+    /// Returns whether the name means nothing outside its declaration.
     pub const fn is_local(&self) -> bool {
         matches!(self, Self::Parameter | Self::BoundName)
     }
@@ -89,7 +89,7 @@ pub(super) fn names_in(parse: &Parse, root: SyntaxNode<'_>) -> Vec<NameUse> {
     collector.found
 }
 
-/// Whether `C.mode` stands here: component and modes are names of the control block.
+/// Returns whether `C.mode` stands here: component and modes are names of the control block.
 fn is_mode(dotted: SyntaxNode<'_>) -> bool {
     dotted
         .own_tokens()
@@ -98,7 +98,7 @@ fn is_mode(dotted: SyntaxNode<'_>) -> bool {
         .is_some_and(|part| part.text == "mode")
 }
 
-/// What `V.at` or a state of a vehicle is compared with.
+/// Returns what `V.at` or a state of a vehicle is compared with.
 fn value_kind(dotted: SyntaxNode<'_>) -> NameKind {
     match dotted.own_tokens().filter(|token| token.kind == SyntaxKind::Name).nth(1) {
         Some(part) if part.text != "at" => NameKind::Value(part.text.into()),

@@ -20,8 +20,8 @@ pub struct Signature {
     pub documentation: String,
 }
 
-/// What is written in the brackets around `offset`: the arguments of a call whose activity is declared, bounds, or the
-/// numbers, parameters and values of a declaration.
+/// Returns what is written in the brackets around `offset`: the arguments of a call whose activity is declared, bounds,
+/// or the numbers, parameters and values of a declaration.
 pub fn signature_at(parse: &Parse, offset: u32) -> Option<Signature> {
     match open_bracket(parse, offset) {
         Some((bracket, owner, first, active)) => {
@@ -62,7 +62,8 @@ fn open_bracket(parse: &Parse, offset: u32) -> Option<(String, String, String, u
     Some((tokens[at].text.to_owned(), owner.to_owned(), first.to_owned(), commas))
 }
 
-/// What a declaration, or bounds, want in a bracket after the word `owner`, where the declaration begins with `first`.
+/// Returns what a declaration, or bounds, want in a bracket after the word `owner`, where the declaration begins with
+/// `first`.
 fn of_declaration(bracket: &str, owner: &str, first: &str) -> Option<(&'static str, &'static str)> {
     Some(match (bracket, owner, first) {
         ("[", ..) => ("[MIN, MAX]", "Minimum and maximum duration; `inf` for no maximum."),

@@ -60,7 +60,7 @@ impl Topic {
         Self::Programs,
     ];
 
-    /// What a name is about.
+    /// Returns what a name is about.
     pub(super) fn of_name(parse: &Parse, name: &NameUse) -> Self {
         match &name.kind {
             NameKind::Activity | NameKind::Scenario | NameKind::Constant => Self::Declarations,
@@ -82,7 +82,7 @@ impl Topic {
         }
     }
 
-    /// What a keyword, or a word that is one in its place, is about.
+    /// Returns what a keyword, or a word that is one in its place, is about.
     pub(super) fn of_word(kind: SyntaxKind, word: &str) -> Self {
         match kind {
             SyntaxKind::MaintainingKeyword

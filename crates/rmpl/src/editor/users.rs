@@ -7,7 +7,7 @@ use crate::program::{Change, LabelMode};
 /// How many names a line lists.
 const MAX_NAMES: usize = 8;
 
-/// Who sets a state variable, and who needs it; empty where no one does.
+/// Returns who sets a state variable, and who needs it; empty where no one does.
 pub(super) fn users_of_state(parse: &Parse, variable: &str) -> Vec<String> {
     let Some(symbol) = parse.meaning().names.find(variable) else { return Vec::new() };
     let (mut setters, mut users) = (Vec::new(), Vec::new());
@@ -28,7 +28,7 @@ pub(super) fn users_of_state(parse: &Parse, variable: &str) -> Vec<String> {
     [line(parse, "Set by", setters), line(parse, "Needed by", users)].into_iter().flatten().collect()
 }
 
-/// Who moves a vehicle, sets its place, and needs it to be somewhere.
+/// Returns who moves a vehicle, sets its place, and needs it to be somewhere.
 pub(super) fn users_of_vehicle(parse: &Parse, vehicle: &str) -> Vec<String> {
     let symbol = parse.meaning().names.find(vehicle);
     let is_move = |kind: UseKind| kind == UseKind::Vehicle;
@@ -39,7 +39,7 @@ pub(super) fn users_of_vehicle(parse: &Parse, vehicle: &str) -> Vec<String> {
     line(parse, "Moved by", movers).into_iter().chain(about_place).collect()
 }
 
-/// Who does what to a resource.
+/// Returns who does what to a resource.
 pub(super) fn users_of_resource(parse: &Parse, resource: &str) -> Vec<String> {
     let Some(symbol) = parse.meaning().names.find(resource) else { return Vec::new() };
     let ways =

@@ -64,7 +64,7 @@ impl Groups {
         self.members.get(name).map(|(_, members)| members.as_slice())
     }
 
-    /// What the members of a group or a fleet are.
+    /// Returns what the members of a group or a fleet are.
     pub fn kind(&self, name: &str) -> Option<GroupKind> {
         self.members.get(name).map(|(kind, _)| *kind)
     }
@@ -110,7 +110,7 @@ impl<'program> Reader<'program> {
         self.groups.members.insert(group.name.text.clone(), (kind, members));
     }
 
-    /// What one member is, and the names that it represents.
+    /// Returns what one member is, and the names that it represents.
     fn member(&mut self, written: &'program Name) -> Option<(GroupKind, Vec<SmolStr>)> {
         let name = written.text.as_str();
         if let Some(at) = self.open.iter().position(|open| *open == name) {

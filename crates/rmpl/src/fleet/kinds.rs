@@ -45,7 +45,7 @@ impl Kind {
         }
     }
 
-    /// Whether what is of this kind can be used as `needed`.
+    /// Returns whether what is of this kind can be used as `needed`.
     fn fits(&self, needed: &Self, world: &World) -> bool {
         match (self, needed) {
             (Self::VehicleOf(own), Self::VehicleOf(model)) => is_of(world, own, model),
@@ -56,7 +56,7 @@ impl Kind {
     }
 }
 
-/// Whether a kind excludes others: the same name may well be a value, or stand in a condition.
+/// Returns whether a kind excludes others: the same name may well be a value, or stand in a condition.
 const fn is_strong(kind: &Kind) -> bool {
     !matches!(kind, Kind::Condition | Kind::ValueOf(_))
 }
@@ -139,7 +139,7 @@ impl<'program> Known<'program> {
         }
     }
 
-    /// What a name is, for messages; nothing if it may be anything.
+    /// Returns what a name is, for messages; nothing if it may be anything.
     fn describe(&self, name: &str) -> Option<&'static str> {
         if self.vehicles.contains_key(name) {
             Some("a vehicle")
@@ -154,7 +154,7 @@ impl<'program> Known<'program> {
         }
     }
 
-    /// Whether a name is of a kind.
+    /// Returns whether a name is of a kind.
     fn is(&self, name: &str, kind: &Kind, world: &World) -> bool {
         match kind {
             Kind::Vehicle => self.vehicles.contains_key(name),

@@ -21,7 +21,7 @@ impl Layout {
         self.breaks.get(&token).copied()
     }
 
-    /// What the token belongs to.
+    /// Returns what the token belongs to.
     pub(super) fn place(&self, token: usize) -> Place {
         self.places.get(token).copied().unwrap_or_default()
     }
@@ -245,7 +245,7 @@ fn first_token(node: SyntaxNode<'_>) -> Option<usize> {
     node.tokens().find(|token| !token.kind.is_trivia()).map(|token| token.index as usize)
 }
 
-/// Whether nothing is between the braces: such a block is always written `{}`.
+/// Returns whether nothing is between the braces: such a block is always written `{}`.
 fn is_empty(block: SyntaxNode<'_>) -> bool {
     block.children().next().is_none() && !block.tokens().any(|token| token.kind.is_comment())
 }

@@ -51,7 +51,7 @@ fn print(parsed: &Parse) -> String {
     printer.out
 }
 
-/// Whether both texts have the same tokens, comments and trees.
+/// Returns whether both texts have the same tokens, comments and trees.
 fn is_same(one: &Parse, other: &Parse) -> bool {
     one.declarations()
         .map(shape)

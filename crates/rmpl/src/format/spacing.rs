@@ -22,7 +22,7 @@ pub(super) enum Place {
     Argument,
 }
 
-/// Whether a blank is between `previous` and `token`, which is in `place`.
+/// Returns whether a blank is between `previous` and `token`, which is in `place`.
 pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_>, place: Place) -> bool {
     use SyntaxKind as Kind;
     match (previous.kind, token.kind) {

@@ -24,7 +24,7 @@ pub(super) enum Formula {
     Any(Vec<Formula>, Span),
 }
 
-/// Whether a node of this kind is a condition.
+/// Returns whether a node of this kind is a condition.
 pub(crate) const fn is_condition(kind: SyntaxKind) -> bool {
     matches!(
         kind,
@@ -50,7 +50,7 @@ pub(super) fn formula(node: SyntaxNode<'_>) -> Option<Formula> {
 }
 
 impl Formula {
-    /// What holds exactly when this does not; `span` is where the negation is written.
+    /// Returns what holds exactly when this does not; `span` is where the negation is written.
     fn negation(self, span: Span) -> Self {
         match self {
             Self::Literal(literal) => Self::Literal(Condition { negated: !literal.negated, ..literal }),
@@ -59,7 +59,8 @@ impl Formula {
         }
     }
 
-    /// How deep what it is required of nests: several joined by `and` are nested, those joined by `or` are alternatives.
+    /// Returns how deep what it is required of nests: several joined by `and` are nested, those joined by `or` are
+    /// alternatives.
     fn height(&self, is_negated: bool) -> usize {
         match self {
             Self::Literal(_) => 1,
@@ -74,7 +75,7 @@ impl Formula {
         }
     }
 
-    /// Where it is written.
+    /// Returns where it is written.
     fn span(&self) -> Span {
         match self {
             Self::Literal(literal) => literal.span,
@@ -286,12 +287,12 @@ impl Lowering<'_> {
     }
 }
 
-/// How many statements there are in `statement`, itself included.
+/// Returns how many statements there are in `statement`, itself included.
 fn size(statement: &Statement) -> usize {
     1 + statement.parts().iter().map(size).sum::<usize>()
 }
 
-/// How deep `statement` is nested, itself included.
+/// Returns how deep `statement` is nested, itself included.
 pub(super) fn depth(statement: &Statement) -> usize {
     1 + statement.parts().iter().map(depth).max().unwrap_or(0)
 }

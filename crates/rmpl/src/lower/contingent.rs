@@ -45,7 +45,7 @@ impl Lowering<'_> {
     }
 }
 
-/// Whether a statement of this kind is one interval. What a name alone calls is known where all names are.
+/// Returns whether a statement of this kind is one interval. What a name alone calls is known where all names are.
 const fn is_simple(kind: SyntaxKind) -> bool {
     matches!(kind, SyntaxKind::Call | SyntaxKind::BareName | SyntaxKind::Assertion | SyntaxKind::Delay)
 }

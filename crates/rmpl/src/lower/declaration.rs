@@ -66,7 +66,7 @@ pub(super) fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
     node.child(SyntaxKind::Formals).map(|formals| names(formals).collect()).unwrap_or_default()
 }
 
-/// What is written of the kinds of parameters, one for each.
+/// Returns what is written of the kinds of parameters, one for each.
 pub(super) fn kinds(node: SyntaxNode<'_>) -> Vec<Option<Name>> {
     let mut kinds = Vec::new();
     for element in node.child(SyntaxKind::Formals).into_iter().flat_map(SyntaxNode::elements) {

@@ -87,7 +87,7 @@ impl<'a> Lowering<'a> {
 }
 
 impl Lowering<'_> {
-    /// What the declaration under `root` declares, if enough of it is there.
+    /// Returns what the declaration under `root` declares, if enough of it is there.
     pub(crate) fn item(&mut self, root: SyntaxNode<'_>) -> Option<Item> {
         self.copied = 0;
         let node = root.children().find(|child| child.kind().is_declaration())?;

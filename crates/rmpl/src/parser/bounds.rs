@@ -22,8 +22,8 @@ impl Parser<'_> {
         self.bounds(Self::signed_sum);
     }
 
-    /// Whether bounds begin with their word, which is a name like any other elsewhere. Where its brackets are still to
-    /// be written, nothing else could continue here.
+    /// Returns whether bounds begin with their word, which is a name like any other elsewhere. Where its brackets are
+    /// still to be written, nothing else could continue here.
     pub(super) fn at_contingent(&mut self) -> bool {
         self.at_word(CONTINGENT)
             && matches!(
@@ -186,7 +186,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a number stands here with a unit of time right after it.
+    /// Returns whether a number stands here with a unit of time right after it.
     pub(super) fn at_quantity(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.at(SyntaxKind::Number)

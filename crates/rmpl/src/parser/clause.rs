@@ -216,7 +216,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a number stands here, rather than `per` or another clause.
+    /// Returns whether a number stands here, rather than `per` or another clause.
     fn at_number(&mut self) -> bool {
         match self.kind {
             SyntaxKind::Name => !self.at_per() && !self.begins_clause(self.current),
@@ -225,13 +225,13 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether `per` and a unit stand here.
+    /// Returns whether `per` and a unit stand here.
     pub(super) fn at_per(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.at_word("per") && Per::by_name(self.text_of(next)).is_some()
     }
 
-    /// Whether a clause begins at `index`: what follows its word tells it from a name.
+    /// Returns whether a clause begins at `index`: what follows its word tells it from a name.
     fn begins_clause(&mut self, index: u32) -> bool {
         if self.kind_at(index) != SyntaxKind::Name {
             return false;
@@ -271,13 +271,13 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a clause begins after the comma at the cursor.
+    /// Returns whether a clause begins after the comma at the cursor.
     fn begins_clause_behind(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.begins_clause(next) || self.at_start_of_activity(next)
     }
 
-    /// Whether the words `at start` are at `index`.
+    /// Returns whether the words `at start` are at `index`.
     pub(super) fn at_start_of_activity(&mut self, index: u32) -> bool {
         let next = self.index_after(index);
         self.kind_at(index) == SyntaxKind::Name

@@ -51,7 +51,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether negations and parentheses stand here around several literals.
+    /// Returns whether negations and parentheses stand here around several literals.
     fn at_group(&mut self) -> bool {
         let mut index = self.current;
         let mut open_parens = 0_u32;
@@ -103,13 +103,13 @@ impl Parser<'_> {
             && matches!(self.text_of(index), "and" | "or")
     }
 
-    /// Whether `and`, `or` or `in` is after the name at the cursor.
+    /// Returns whether `and`, `or` or `in` is after the name at the cursor.
     pub(super) fn at_joined_literal(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.kind_at(next) == SyntaxKind::Name && matches!(self.text_of(next), "and" | "or" | "in")
     }
 
-    /// Whether `X in` stands here.
+    /// Returns whether `X in` stands here.
     pub(super) fn at_membership(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.kind_at(next) == SyntaxKind::Name && self.text_of(next) == "in"

@@ -11,7 +11,7 @@ pub(crate) const PROPERTY_WORDS: [&str; 7] =
     ["body", "speed", "slope", "clearance", "turning", "mast", "flies"];
 
 impl Parser<'_> {
-    /// Whether `model NAME {` or `model NAME extends` begins here.
+    /// Returns whether `model NAME {` or `model NAME extends` begins here.
     pub(super) fn at_model(&mut self) -> bool {
         if !self.at_word("model") || self.peek() != SyntaxKind::Name {
             return false;
@@ -22,7 +22,7 @@ impl Parser<'_> {
             || (self.kind_at(next) == SyntaxKind::Name && self.text_of(next) == "extends")
     }
 
-    /// Whether `group NAME =` begins here.
+    /// Returns whether `group NAME =` begins here.
     pub(super) fn at_group_declaration(&mut self) -> bool {
         if !self.at_word("group") || self.peek() != SyntaxKind::Name {
             return false;
@@ -274,7 +274,7 @@ impl Parser<'_> {
             && is_index(self.text_of(index + 2))
     }
 
-    /// Whether `R1.battery` stands here as a whole argument: a resource or a state that is handed on.
+    /// Returns whether `R1.battery` stands here as a whole argument: a resource or a state that is handed on.
     pub(super) fn at_equipment(&mut self) -> bool {
         if !self.at(SyntaxKind::Name) || self.peek() != SyntaxKind::Dot {
             return false;
@@ -287,7 +287,7 @@ impl Parser<'_> {
             && matches!(self.kind_at(next), SyntaxKind::Comma | SyntaxKind::RightParen)
     }
 
-    /// Whether `any NAME in` or `each NAME in` begins here.
+    /// Returns whether `any NAME in` or `each NAME in` begins here.
     pub(super) fn at_members(&mut self) -> bool {
         if !(self.at_word("any") || self.at_word("each")) || self.peek() != SyntaxKind::Name {
             return false;
@@ -324,7 +324,7 @@ impl Parser<'_> {
 
 const LENGTH_UNITS: [&str; 4] = ["m", "cm", "mm", "km"];
 
-/// Whether a number is one of a fleet's: whole, without a sign, and written as the name of the vehicle is.
+/// Returns whether a number is one of a fleet's: whole, without a sign, and written as the name of the vehicle is.
 fn is_index(text: &str) -> bool {
     text.bytes().all(|byte| byte.is_ascii_digit())
         && text.len() < 10

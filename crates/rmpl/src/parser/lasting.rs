@@ -68,7 +68,7 @@ impl Parser<'_> {
         SyntaxKind::ResourceDecl
     }
 
-    /// Whether the capacity follows; a constant of that name may be the minimum level.
+    /// Returns whether the capacity follows; a constant of that name may be the minimum level.
     fn at_capacity(&mut self) -> bool {
         self.at_word("capacity")
             && !matches!(

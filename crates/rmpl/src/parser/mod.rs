@@ -182,7 +182,7 @@ impl<'t> Parser<'t> {
         self.text_of(self.current)
     }
 
-    /// Whether the current token is the name `word`, which is a keyword only in its place.
+    /// Returns whether the current token is the name `word`, which is a keyword only in its place.
     fn at_word(&self, word: &str) -> bool {
         self.at(SyntaxKind::Name) && self.current_text() == word
     }

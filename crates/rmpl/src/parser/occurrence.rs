@@ -8,7 +8,7 @@ use crate::syntax::SyntaxKind;
 const AS: &str = "as";
 
 impl Parser<'_> {
-    /// Whether `as NAME` is at the cursor, where a statement or its bounds end.
+    /// Returns whether `as NAME` is at the cursor, where a statement or its bounds end.
     fn at_naming(&mut self) -> bool {
         self.at_word(AS) && self.peek() == SyntaxKind::Name
     }
@@ -24,7 +24,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Naming);
     }
 
-    /// Whether `as NAME` is after the name at `index`.
+    /// Returns whether `as NAME` is after the name at `index`.
     pub(super) fn is_naming(&mut self, index: u32) -> bool {
         if self.text_of(index) != AS {
             return false;
@@ -33,12 +33,12 @@ impl Parser<'_> {
         self.kind_at(name) == SyntaxKind::Name
     }
 
-    /// Whether `constrain NAME` begins here: no definition and no statement begins with two names like that.
+    /// Returns whether `constrain NAME` begins here: no definition and no statement begins with two names like that.
     pub(super) fn at_constrain(&mut self) -> bool {
         self.at_word("constrain") && self.peek() == SyntaxKind::Name && !self.at_joint()
     }
 
-    /// Whether `import "` begins here.
+    /// Returns whether `import "` begins here.
     pub(super) fn at_import(&mut self) -> bool {
         self.at_word("import") && self.peek() == SyntaxKind::String
     }

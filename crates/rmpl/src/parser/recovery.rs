@@ -39,12 +39,12 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the current token can begin a statement.
+    /// Returns whether the current token can begin a statement.
     pub(super) fn at_statement_start(&self) -> bool {
         matches!(self.kind, SyntaxKind::Name | SyntaxKind::LeftParen) || begins_only_statements(self.kind)
     }
 
-    /// Whether the current token ends a statement or a group of them.
+    /// Returns whether the current token ends a statement or a group of them.
     pub(super) fn at_statement_end(&mut self) -> bool {
         matches!(
             self.kind,
@@ -52,7 +52,7 @@ impl Parser<'_> {
         ) || self.at_declaration_at_line_start()
     }
 
-    /// Whether a declaration certainly begins here: in a block, this means that a brace was left open.
+    /// Returns whether a declaration certainly begins here: in a block, this means that a brace was left open.
     pub(super) fn at_declaration_at_line_start(&mut self) -> bool {
         match self.kind {
             SyntaxKind::VarKeyword
@@ -79,7 +79,7 @@ impl Parser<'_> {
         start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
     }
 
-    /// Whether `Name( … ) [ … ] = {` begins here; if not `strict`, a missing `=` or `{` is forgiven.
+    /// Returns whether `Name( … ) [ … ] = {` begins here; if not `strict`, a missing `=` or `{` is forgiven.
     pub(super) fn at_definition(&mut self, strict: bool) -> bool {
         if !self.at(SyntaxKind::Name) {
             return false;
@@ -132,12 +132,12 @@ impl Parser<'_> {
         index
     }
 
-    /// Whether `const NAME` begins here: no definition begins with two names.
+    /// Returns whether `const NAME` begins here: no definition begins with two names.
     pub(super) fn at_constant(&mut self) -> bool {
         self.at_word("const") && (self.peek() == SyntaxKind::Name || self.at_definition_of_nothing())
     }
 
-    /// Whether a state, a resource or an objective is declared here. No definition begins with two names, but a
+    /// Returns whether a state, a resource or an objective is declared here. No definition begins with two names, but a
     /// statement may: `state and ready`.
     pub(super) fn at_lasting_declaration(&mut self) -> bool {
         self.at(SyntaxKind::Name)
@@ -146,7 +146,7 @@ impl Parser<'_> {
             && !self.at_joint()
     }
 
-    /// Whether a word that continues with the statement is after the name at the cursor.
+    /// Returns whether a word that continues with the statement is after the name at the cursor.
     pub(super) fn at_joint(&mut self) -> bool {
         let next = self.index_after(self.current);
         if self.kind_at(next) != SyntaxKind::Name {
@@ -163,7 +163,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a world declaration begins here: its first word is a keyword only before what must follow it.
+    /// Returns whether a world declaration begins here: its first word is a keyword only before what must follow it.
     pub(super) fn at_world_declaration(&mut self) -> bool {
         if !self.at(SyntaxKind::Name) {
             return false;
@@ -177,12 +177,12 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the word is alone before `;`, as in a declaration that is being typed.
+    /// Returns whether the word is alone before `;`, as in a declaration that is being typed.
     fn at_definition_of_nothing(&mut self) -> bool {
         self.peek() == SyntaxKind::Semicolon && self.begins_line()
     }
 
-    /// Whether any declaration begins here.
+    /// Returns whether any declaration begins here.
     pub(super) fn at_file_item(&mut self) -> bool {
         matches!(
             self.kind,
@@ -202,7 +202,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a token begins a statement wherever one may stand. A name or a parenthesis may be something else.
+/// Returns whether a token begins a statement wherever one may stand. A name or a parenthesis may be something else.
 pub(super) const fn begins_only_statements(kind: SyntaxKind) -> bool {
     matches!(
         kind,

@@ -27,7 +27,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Rule);
     }
 
-    /// Whether the rule begins with its word, which may be the name of a variable as well.
+    /// Returns whether the rule begins with its word, which may be the name of a variable as well.
     fn at_rule_word(&mut self) -> bool {
         let is_name = matches!(
             self.peek(),
@@ -61,7 +61,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Moment);
     }
 
-    /// What follows the name of an activity or a resource, if that is what the name is.
+    /// Returns what follows the name of an activity or a resource, if that is what the name is.
     pub(super) fn rule_atom(&mut self) -> bool {
         if self.eat(SyntaxKind::Order) {
             self.sum();

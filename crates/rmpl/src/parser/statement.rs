@@ -331,7 +331,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Arguments);
     }
 
-    /// Whether `repeat N {` begins here; otherwise the word is a name like any other.
+    /// Returns whether `repeat N {` begins here; otherwise the word is a name like any other.
     fn at_repeat(&mut self) -> bool {
         if !self.at_word("repeat") {
             return false;
@@ -363,7 +363,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Repeat);
     }
 
-    /// Whether `word` is before a statement; otherwise it is a name like any other.
+    /// Returns whether `word` is before a statement; otherwise it is a name like any other.
     fn at_prefix(&mut self, word: &str) -> bool {
         self.at_word(word)
             && match self.peek() {

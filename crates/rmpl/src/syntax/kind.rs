@@ -276,22 +276,22 @@ pub enum SyntaxKind {
 }
 
 impl SyntaxKind {
-    /// Whether the grammar looks past it.
+    /// Returns whether the grammar looks past it.
     pub const fn is_trivia(self) -> bool {
         matches!(self, Self::Whitespace | Self::LineComment | Self::BlockComment | Self::Unknown)
     }
 
-    /// Whether it is a comment.
+    /// Returns whether it is a comment.
     pub const fn is_comment(self) -> bool {
         matches!(self, Self::LineComment | Self::BlockComment)
     }
 
-    /// Whether it is a reserved word; `inf` counts, `∞` is the same token.
+    /// Returns whether it is a reserved word; `inf` counts, `∞` is the same token.
     pub const fn is_keyword(self) -> bool {
         self as u8 >= Self::ChooseKeyword as u8 && self as u8 <= Self::AskKeyword as u8
     }
 
-    /// Whether it is a declaration, which is directly under the root.
+    /// Returns whether it is a declaration, which is directly under the root.
     pub const fn is_declaration(self) -> bool {
         self as u8 >= Self::VariableDecl as u8 && self as u8 <= Self::VehicleDecl as u8
     }
@@ -318,7 +318,7 @@ impl SyntaxKind {
         })
     }
 
-    /// How a message calls the token.
+    /// Returns how a message calls the token.
     pub const fn describe(self) -> &'static str {
         match self {
             Self::Name => "a name",

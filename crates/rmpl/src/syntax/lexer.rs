@@ -296,7 +296,7 @@ impl<'t> Lexer<'t> {
     }
 }
 
-/// Whether `letter` is one of the dashes that word processors put in place of a hyphen.
+/// Returns whether `letter` is one of the dashes that word processors put in place of a hyphen.
 pub(crate) fn is_dash(letter: char) -> bool {
     matches!(letter, '\u{2010}'..='\u{2015}' | '\u{2212}')
 }

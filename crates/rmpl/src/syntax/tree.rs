@@ -40,7 +40,7 @@ impl DeclarationTree {
         self.tokens.last().map_or(0, |token| token.end)
     }
 
-    /// Whether it has no text.
+    /// Returns whether it has no text.
     pub fn is_empty(&self) -> bool {
         self.tokens.is_empty()
     }
@@ -99,7 +99,7 @@ impl<'a> SyntaxNode<'a> {
         self.index
     }
 
-    /// Where it is in the file.
+    /// Returns where it is in the file.
     pub fn span(self) -> Span {
         let raw = self.raw();
         let start = self.tree.token_start(raw.first_token);

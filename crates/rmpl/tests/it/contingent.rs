@@ -179,7 +179,7 @@ fn formatting_is_stable_and_puts_one_blank_around_the_word() {
 const HEAD: &str = "const LONG = 40;\nvar LIGHT : {ON, OFF};\nlocation BASE (0, 0);\n\
                     primitive Drive(to) contingent [LONG/2,LONG];\nprimitive Dig()[1,2];\n";
 
-/// What completing offers at the cursor, with what it writes.
+/// Returns what completing offers at the cursor, with what it writes.
 fn offered(line: &str) -> Vec<(String, String)> {
     let fixture = fixture(&format!("{HEAD}{line}\n"));
     let completion = editor::complete(&parse(&fixture.text), fixture.cursor);

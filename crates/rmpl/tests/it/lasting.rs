@@ -268,7 +268,7 @@ const WORDS: [&str; 24] = [
     "metre",
 ];
 
-/// What a mission means that has `word` in every place where a name can stand.
+/// Returns what a mission means that has `word` in every place where a name can stand.
 fn mission(word: &str) -> String {
     format!(
         "{word}(x)[l,u] = {{ delay }}\n\

@@ -178,7 +178,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// What an element says under a name; `None` where it says nothing.
+    /// Returns what an element says under a name; `None` where it says nothing.
     fn data(&self, node: Node<'a, 'input>, name: &str) -> Option<&'a str> {
         node.children()
             .filter(|child| child.is_named("data"))
@@ -204,7 +204,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         }
     }
 
-    /// What makes the file a conditional network.
+    /// Returns what makes the file a conditional network.
     fn conditional(&self, node: Node<'a, 'input>, what: &str) -> ParseError {
         let message = format!(
             "{what}, so this is a conditional network (CSTN or CSTNU), which is not supported; only STN and STNU are"

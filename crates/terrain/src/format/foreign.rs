@@ -28,7 +28,7 @@ const BEGINNINGS: [(&[u8], &str, &str); 17] = [
     (b"\x1f\x8b", "gzip archive", "unpack it and open the map inside"),
 ];
 
-/// Why a file of a known format that is not read is refused; `None` for all others.
+/// Returns why a file of a known format that is not read is refused; `None` for all others.
 pub fn refusal(bytes: &[u8]) -> Option<FormatError> {
     let start = &bytes[..bytes.len().min(REACH)];
     let text = start.trim_ascii_start();

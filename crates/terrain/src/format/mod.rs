@@ -218,8 +218,8 @@ impl Raster {
         GridFrame { origin_m, ..GridFrame::new(self.width, self.height, cell_size_m) }
     }
 
-    /// Which cells are obstacles, row by row from the top: those that the file calls so, gray levels in the darker
-    /// half of their range, and cells without data.
+    /// Returns which cells are obstacles, row by row from the top: those that the file calls so, gray levels in the
+    /// darker half of their range, and cells without data.
     pub fn obstacles(&self) -> Vec<bool> {
         let limit = match self.meaning {
             Meaning::Obstacles => return self.samples.iter().map(|&sample| sample != 0.0).collect(),

@@ -1,7 +1,7 @@
 //! PDS3 labels as keywords with values: of the object that describes the image, and of what stands around it. What other objects of the
 //! file say, tables and their columns for instance, is not of the image.
 
-/// Whether a keyword stands in a label without a value.
+/// Returns whether a keyword stands in a label without a value.
 pub(super) fn is_absent(written: &str) -> bool {
     ["N/A", "UNK", "NONE"].iter().any(|word| written.trim_matches('"').eq_ignore_ascii_case(word))
 }
@@ -65,7 +65,7 @@ impl Label {
         label
     }
 
-    /// What the label says of the image.
+    /// Returns what the label says of the image.
     pub(super) fn value(&self, keyword: &str) -> Option<&str> {
         let mut entries = self.of_image.iter().chain(&self.around);
         entries.find(|(word, _)| word == keyword).map(|(_, value)| value.as_str())

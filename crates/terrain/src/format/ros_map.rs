@@ -47,8 +47,8 @@ pub(super) fn image_name(bytes: &[u8]) -> Option<String> {
     keys(yaml).ok()?.into_iter().find(|(key, _)| key == "image").map(|(_, name)| name)
 }
 
-/// Whether a file begins with the description of a map: each of its first lines is a key, a comment or empty, and
-/// `image` and `resolution` are among the keys.
+/// Returns whether a file begins with the description of a map: each of its first lines is a key, a comment or empty,
+/// and `image` and `resolution` are among the keys.
 pub(super) fn is_description(bytes: &[u8]) -> bool {
     let (yaml, _) = parts(bytes);
     keys(yaml).is_ok_and(|keys| {

@@ -15,7 +15,7 @@ pub(super) trait Values {
     /// The value of a name.
     fn number(&self, name: &str) -> Option<Bound>;
 
-    /// How many of the mission's units of time one `unit` is, if that can be said exactly.
+    /// Returns how many of the mission's units of time one `unit` is, if that can be said exactly.
     fn in_mission_units(&self, unit: DurationUnit) -> Option<Rational>;
 }
 
@@ -32,12 +32,12 @@ impl Interval {
     /// At the same time.
     pub(super) const ZERO: Self = Self { lower: Time::ZERO, upper: Bound::ZERO };
 
-    /// Whether it allows all that `other` does.
+    /// Returns whether it allows all that `other` does.
     pub(super) fn contains(self, other: Self) -> bool {
         self.lower <= other.lower && self.upper >= other.upper
     }
 
-    /// Whether it allows no time at all.
+    /// Returns whether it allows no time at all.
     pub(super) fn allows_zero(self) -> bool {
         self.lower <= Time::ZERO && self.upper >= Bound::ZERO
     }
@@ -48,7 +48,7 @@ impl Interval {
         (upper.is_positive() && !lower.is_negative()).then_some(Self { lower, upper: Bound::Finite(upper) })
     }
 
-    /// What both allow, if there is anything.
+    /// Returns what both allow, if there is anything.
     pub(super) fn intersect(self, other: Self) -> Option<Self> {
         let both = Self { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) };
         (Bound::Finite(both.lower) <= both.upper).then_some(both)
@@ -99,7 +99,7 @@ fn ordered_interval(lower: Bound, upper: Bound, span: Span) -> Result<Interval, 
     Ok(Interval { lower: least, upper })
 }
 
-/// Whether the value of `bounds` depends on no name.
+/// Returns whether the value of `bounds` depends on no name.
 pub(super) fn is_constant(bounds: &Bounds) -> bool {
     fn constant(expr: &Expr) -> bool {
         match &expr.kind {

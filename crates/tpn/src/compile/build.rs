@@ -56,7 +56,7 @@ pub(super) struct Builder {
 const UNKNOWN: NodeId = NodeId(u32::MAX);
 
 impl Builder {
-    /// How many nodes there are.
+    /// Returns how many nodes there are.
     pub(super) fn node_count(&self) -> usize {
         self.nodes.len()
     }

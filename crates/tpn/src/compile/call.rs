@@ -199,8 +199,9 @@ impl<'program> Expander<'program> {
         Piece { block, ..piece }
     }
 
-    /// How long a call of a primitive takes, whose own bounds are `written`. Plain bounds of both hold; what nature
-    /// chooses, plain bounds of the call do not narrow, and its contingent ones lie within the declared (SPEC 13.1).
+    /// Returns how long a call of a primitive takes, whose own bounds are `written`. Plain bounds of both hold; what
+    /// nature chooses, plain bounds of the call do not narrow, and its contingent ones lie within the declared (SPEC
+    /// 13.1).
     fn duration(
         &mut self,
         call: &Invocation<'_>,

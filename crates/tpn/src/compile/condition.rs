@@ -173,7 +173,7 @@ impl<'program> Expander<'program> {
         piece
     }
 
-    /// What is asserted: of a variable that keeps its value, one value.
+    /// Returns what is asserted: of a variable that keeps its value, one value.
     pub(super) fn told(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
         let fact = self.fact(condition, scope)?;
         let is_one = !fact.negated && fact.values.len() == 1 && fact.sees.is_none();

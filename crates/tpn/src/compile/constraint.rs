@@ -64,7 +64,7 @@ impl Occurrence {
         if name.is_end { self.end } else { self.start }
     }
 
-    /// How many instances and copies hold both.
+    /// Returns how many instances and copies hold both.
     fn nearness(&self, other: &Self) -> usize {
         self.path.iter().zip(&other.path).take_while(|(one, other)| one == other).count()
     }

@@ -142,13 +142,13 @@ fn decisions(program: &Program, statements: &[&Statement]) -> Vec<Decision> {
     found.collect()
 }
 
-/// Whether a group or a fleet has more than one member.
+/// Returns whether a group or a fleet has more than one member.
 fn has_several(program: &Program, group: &str) -> bool {
     let is_group = program.groups.iter().any(|it| it.name.text == *group && it.members.len() > 1);
     is_group || program.fleets.iter().any(|it| it.name.text == *group && it.members().count() > 1)
 }
 
-/// What statements of the world's leave to the plan.
+/// Returns what statements of the world's leave to the plan.
 fn choices(statements: &[&Statement], constants: &Constants<'_>) -> Vec<Choice> {
     let left = |statement: &&Statement| match &statement.kind {
         StatementKind::Delay => {
@@ -167,7 +167,7 @@ fn choices(statements: &[&Statement], constants: &Constants<'_>) -> Vec<Choice> 
     statements.iter().filter_map(left).collect()
 }
 
-/// What one delay or assertion leaves to the plan, which lasts `unwritten` where it has no bounds.
+/// Returns what one delay or assertion leaves to the plan, which lasts `unwritten` where it has no bounds.
 fn choice(
     statement: &Statement,
     name: String,
@@ -189,7 +189,7 @@ fn choice(
     })
 }
 
-/// Whether a word before the bounds would run into what is before it. Where more than the condition does, as in
+/// Returns whether a word before the bounds would run into what is before it. Where more than the condition does, as in
 /// `a and b[1,2]`, it might.
 fn needs_blank(condition: &Condition, bounds: &Bounds) -> bool {
     bounds.span.start.checked_sub(condition.span.end) != Some(1)

@@ -43,7 +43,7 @@ pub(super) fn interchangeable(program: &Program, groups: &Groups) -> Vec<Vec<Smo
     alike.filter_map(in_order).collect()
 }
 
-/// What each vehicle has of its own, without its name, as text.
+/// Returns what each vehicle has of its own, without its name, as text.
 fn equipment(program: &Program) -> BTreeMap<&str, Vec<String>> {
     let vehicles = vehicles(program);
     let mut equipment: BTreeMap<&str, Vec<String>> = BTreeMap::new();

@@ -116,7 +116,7 @@ pub fn compile_scenarios(
     listed(without_repeats(diagnostics))
 }
 
-/// Whether a mistake would only bring others with it, or no end.
+/// Returns whether a mistake would only bring others with it, or no end.
 fn prevents_expansion(found: &Diagnostic) -> bool {
     found.code == recursion::CODE || found.code == kind::CODE
 }

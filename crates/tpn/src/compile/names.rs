@@ -157,12 +157,12 @@ impl<'program> Vocabulary<'program> {
         Self { domains, without_component, compared, initial, places, models, ground, hidden }
     }
 
-    /// Whether a variable keeps its value until something changes it (SPEC 10).
+    /// Returns whether a variable keeps its value until something changes it (SPEC 10).
     pub(super) fn is_lasting(&self, variable: &str) -> bool {
         self.initial.iter().any(|(name, _, _)| name == variable)
     }
 
-    /// What holds at the start of everything, and where that is declared.
+    /// Returns what holds at the start of everything, and where that is declared.
     pub(super) fn initial_values(&self) -> impl Iterator<Item = (Fact, Span)> + '_ {
         self.initial.iter().map(|(variable, value, span)| (Fact::is(variable.clone(), value.clone()), *span))
     }
@@ -172,7 +172,7 @@ impl<'program> Vocabulary<'program> {
         declared.or_else(|| self.places.get(variable).map(|places| &**places))
     }
 
-    /// What `condition` says where `substitute` gives the arguments of formals.
+    /// Returns what `condition` says where `substitute` gives the arguments of formals.
     pub(super) fn fact(
         &self,
         condition: &Condition,
@@ -206,7 +206,7 @@ impl<'program> Vocabulary<'program> {
         self.with_places(fact, condition)
     }
 
-    /// What is to see a location, with the places from which it does.
+    /// Returns what is to see a location, with the places from which it does.
     fn with_places(&self, fact: Fact, condition: &Condition) -> Result<Fact, Diagnostic> {
         let Some(location) = &fact.sees else { return Ok(fact) };
         let span = condition.sees.as_ref().map_or(condition.span, |location| location.span);
@@ -234,7 +234,8 @@ impl<'program> Vocabulary<'program> {
         Ok(Fact { values, ..fact })
     }
 
-    /// What was worked out of what vehicles see, as far as `facts` ask for it, with the variables of the network.
+    /// Returns what was worked out of what vehicles see, as far as `facts` ask for it, with the variables of the
+    /// network.
     pub(super) fn sights(&self, facts: &[Fact], variables: &[Variable]) -> Vec<Sight> {
         let asked: BTreeSet<(&SmolStr, &SmolStr)> =
             facts.iter().filter_map(|fact| Some((&fact.variable, fact.sees.as_ref()?))).collect();

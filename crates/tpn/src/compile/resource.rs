@@ -271,7 +271,7 @@ impl<'program> Expander<'program> {
         format_smolstr!("{name}{}{bound}", order(condition, level).symbol())
     }
 
-    /// What a name is, if something without a level is called so.
+    /// Returns what a name is, if something without a level is called so.
     fn without_level(&self, name: &str) -> Option<&'static str> {
         if let Some(resource) = self.resources.get(name) {
             let supply = resource.map(|resource| self.builder.resources[resource.index()].supply);
@@ -366,7 +366,7 @@ impl<'program> Expander<'program> {
         Piece { start: fork, end: join, end_kind: End::Structural, block, arc: None, occurrence: None }
     }
 
-    /// What plans are to be best in.
+    /// Returns what plans are to be best in.
     pub(super) fn objective(&self) -> Vec<Goal> {
         let goals = self.program.objectives.first().map(|declared| declared.goals.as_slice());
         goals
@@ -381,7 +381,7 @@ impl<'program> Expander<'program> {
     }
 }
 
-/// How a level has to compare with its bound.
+/// Returns how a level has to compare with its bound.
 const fn order(condition: &Condition, level: &Level) -> program::Order {
     if condition.negated { level.order.opposite() } else { level.order }
 }

@@ -96,7 +96,7 @@ impl Scope {
         substituted(name, &|name| self.argument(name))
     }
 
-    /// What expressions mean in this instance.
+    /// Returns what expressions mean in this instance.
     pub(super) const fn values<'a>(&'a self, constants: &'a Constants<'a>) -> ScopeValues<'a> {
         ScopeValues { scope: self, constants }
     }

@@ -6,7 +6,7 @@ use super::expander::Expander;
 use super::scope::Scope;
 
 impl Expander<'_> {
-    /// Whether the piece will be a single arc that can carry a label itself.
+    /// Returns whether the piece will be a single arc that can carry a label itself.
     pub(super) fn is_single_arc(&self, statement: &Statement, scope: &Scope) -> bool {
         match &statement.kind {
             StatementKind::Delay => true,
@@ -32,7 +32,7 @@ impl Expander<'_> {
         }
     }
 
-    /// Whether the piece will be one instance of a defined activity, whose name the interval can carry.
+    /// Returns whether the piece will be one instance of a defined activity, whose name the interval can carry.
     pub(super) fn is_instance(&self, statement: &Statement, scope: &Scope) -> bool {
         match &statement.kind {
             StatementKind::Call(name, _) => self.activities.contains_key(scope.name(&name.text).as_str()),
@@ -68,7 +68,8 @@ impl Expander<'_> {
     }
 }
 
-/// Whether the first node of the piece will be a decision; `is_bounded_outside` when its bounds are already dealt with.
+/// Returns whether the first node of the piece will be a decision; `is_bounded_outside` when its bounds are already
+/// dealt with.
 pub(super) fn starts_with_decision(statement: &Statement, is_bounded_outside: bool) -> bool {
     if statement.bounds.is_some() && !is_bounded_outside {
         return false;

@@ -126,12 +126,12 @@ impl Constraints {
         }
     }
 
-    /// What an arc takes at least, from where a movement starts.
+    /// Returns what an arc takes at least, from where a movement starts.
     pub(super) fn least(&self, arc: ArcId) -> i128 {
         self.bounds[arc.index()].0
     }
 
-    /// What an arc takes at most, if anything.
+    /// Returns what an arc takes at most, if anything.
     pub(super) fn greatest(&self, arc: ArcId) -> Option<i128> {
         self.bounds[arc.index()].1
     }
@@ -141,7 +141,8 @@ impl Constraints {
         Time::from_wide(scaled, self.scale)
     }
 
-    /// Whether an edge is a bound of one of some arcs, which are sorted: its own, or what a movement takes at least.
+    /// Returns whether an edge is a bound of one of some arcs, which are sorted: its own, or what a movement takes at
+    /// least.
     pub(super) fn is_range(&self, network: &Network, edge: &Edge, arcs: &[ArcId]) -> bool {
         let arc = match self.reasons[edge.reason as usize] {
             Reason::Arc(arc) => arc,
@@ -151,8 +152,8 @@ impl Constraints {
         arcs.binary_search(&arc).is_ok()
     }
 
-    /// What put an edge there, in the author's terms; `None` for `[0,0]` between events, which only joins the program's
-    /// parts.
+    /// Returns what put an edge there, in the author's terms; `None` for `[0,0]` between events, which only joins the
+    /// program's parts.
     pub(super) fn tell(&self, network: &Network, reason: u32) -> Option<String> {
         let reason = self.reasons[reason as usize];
         if let Reason::Arc(arc) = reason {

@@ -158,7 +158,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether an interval never ends before it starts.
+    /// Returns whether an interval never ends before it starts.
     fn is_forward(&self, span: Span) -> bool {
         self.entailment.happens_before(span.start, span.end)
     }

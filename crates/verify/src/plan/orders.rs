@@ -46,7 +46,7 @@ impl Stated {
         self.said.binary_search(&(first, then)).is_ok()
     }
 
-    /// Whether it is said; then it has been accounted for.
+    /// Returns whether it is said; then it has been accounted for.
     fn take(&mut self, first: LabelId, then: LabelId) -> bool {
         let found = self.said.binary_search(&(first, then));
         if let Ok(index) = found {
@@ -55,7 +55,7 @@ impl Stated {
         found.is_ok()
     }
 
-    /// Which of two that must be ordered is first; what is wrong, if the plan does not say exactly that.
+    /// Returns which of two that must be ordered is first; what is wrong, if the plan does not say exactly that.
     pub(super) fn side(&mut self, network: &Network, one: LabelId, other: LabelId) -> Result<Side, String> {
         let names = || (network.label_name(one), network.label_name(other));
         match (self.take(one, other), self.take(other, one)) {

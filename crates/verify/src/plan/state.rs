@@ -161,7 +161,7 @@ impl StateCheck<'_> {
         &self.checker.network.variables[self.state.variable.index()].name
     }
 
-    /// What a producer does, for people: `Deploy#1 changes ARM`, `Tell(ARM=OUT)#1 says ARM=OUT`.
+    /// Returns what a producer does, for people: `Deploy#1 changes ARM`, `Tell(ARM=OUT)#1 says ARM=OUT`.
     fn deed(&self, producer: &Producer) -> String {
         let network = self.checker.network;
         let text = &network.labels[producer.label.index()].text;

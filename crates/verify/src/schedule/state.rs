@@ -96,8 +96,9 @@ impl Schedule<'_> {
         }
     }
 
-    /// Whether a producer makes a requirement hold in some order of each instant: what threatens the requirement and starts
-    /// before it ends comes before the producer. `latest` are the threats with the latest two ends.
+    /// Returns whether a producer makes a requirement hold in some order of each instant: what threatens the
+    /// requirement and starts before it ends comes before the producer. `latest` are the threats with the latest two
+    /// ends.
     fn may_support(
         &self,
         producer: &Producer,

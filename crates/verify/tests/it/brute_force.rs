@@ -69,7 +69,7 @@ fn is_within(constraint: &Constraint, duration: i64) -> bool {
     (units(constraint.lower)..=upper).contains(&duration)
 }
 
-/// Whether the definitions accept a plan, given all its schedules up to the horizon that bounds them.
+/// Returns whether the definitions accept a plan, given all its schedules up to the horizon that bounds them.
 pub fn accepts_plan(network: &Network, plan: &Plan, schedules: &[Schedule]) -> bool {
     let choices = &plan.choices;
     let (nodes, arcs) = closure(network, choices);
@@ -143,7 +143,7 @@ fn has_windows(network: &Network, plan: &Plan, schedules: &[Schedule]) -> bool {
     })
 }
 
-/// Whether the definitions accept a schedule of a plan's selection, which must be a closed one.
+/// Returns whether the definitions accept a schedule of a plan's selection, which must be a closed one.
 pub fn accepts_schedule(network: &Network, plan: &Plan, at: &Schedule) -> bool {
     let arcs = network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected);
     let keeps_durations = arcs.map(|(arc, _)| arc).all(|arc| {

@@ -246,7 +246,7 @@ fn plan_of_everything(network: &Network) -> Plan {
     }
 }
 
-/// Whether the plan can be kept, whatever else is wrong with it.
+/// Returns whether the plan can be kept, whatever else is wrong with it.
 fn is_kept(verdict: &Verdict) -> bool {
     let is_broken = |violation: &Violation| matches!(violation.rule, Rule::Temporal | Rule::Controllability);
     !verdict.violations.iter().any(is_broken)

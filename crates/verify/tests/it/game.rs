@@ -31,8 +31,8 @@ pub struct Game {
 }
 
 impl Game {
-    /// Whether the executive has a strategy. All arcs are kept; the start happens at 0, everything by `horizon` units;
-    /// there are `ticks` in a unit.
+    /// Returns whether the executive has a strategy. All arcs are kept; the start happens at 0, everything by `horizon`
+    /// units; there are `ticks` in a unit.
     pub fn has_strategy(network: &Network, horizon: i32, ticks: i32) -> bool {
         let whole = |time: exact::Time| {
             assert!(time.is_integer(), "a game on whole numbers");
@@ -55,7 +55,7 @@ impl Game {
         game.is_won_by_the_executive((times, 0), false)
     }
 
-    /// Whether a bound can no longer be kept.
+    /// Returns whether a bound can no longer be kept.
     fn is_broken(&self, (times, now): &State) -> bool {
         self.ranges.iter().filter(|range| !range.is_natures).any(|range| {
             match (times[range.from], times[range.to]) {

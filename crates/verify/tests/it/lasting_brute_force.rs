@@ -125,7 +125,7 @@ impl<'plan> Before<'plan> {
         Self { schedules, order }
     }
 
-    /// Whether some event would have to be before itself.
+    /// Returns whether some event would have to be before itself.
     pub fn has_circle(&self) -> bool {
         (0..self.order.len()).any(|node| self.order[node][node])
     }
@@ -138,7 +138,7 @@ impl<'plan> Before<'plan> {
     }
 }
 
-/// Which event the text puts before which, row by row; not closed.
+/// Returns which event the text puts before which, row by row; not closed.
 fn text_order(network: &Network, plan: &Plan) -> Vec<Vec<bool>> {
     let mut order = vec![vec![false; network.nodes.len()]; network.nodes.len()];
     for (arc, &is_selected) in network.arcs.iter().zip(&plan.selected_arcs) {
@@ -159,8 +159,8 @@ fn close(order: &mut [Vec<bool>]) {
     }
 }
 
-/// Whether some order of all events, by time and within each instant as the text has it, keeps a rule: `keeps` is told the
-/// place of each event that states and resources are about. `None` after too many of them.
+/// Returns whether some order of all events, by time and within each instant as the text has it, keeps a rule: `keeps`
+/// is told the place of each event that states and resources are about. `None` after too many of them.
 pub fn some_order_keeps(
     network: &Network,
     plan: &Plan,
@@ -197,7 +197,7 @@ pub fn some_order_keeps(
     Some(false)
 }
 
-/// Whether SPEC 10.2 accepts a plan in which events happen in this order, and the plan says all of it.
+/// Returns whether SPEC 10.2 accepts a plan in which events happen in this order, and the plan says all of it.
 pub fn accepts_states(network: &Network, plan: &Plan, before: &Before<'_>) -> bool {
     let ends = |label: LabelId| occupied(network, label);
     // Each variable lists what gives it its values, all of it and each once.
@@ -266,7 +266,7 @@ pub fn accepts_states(network: &Network, plan: &Plan, before: &Before<'_>) -> bo
     plan.orderings_added.iter().all(|it| asked.contains(&(it.first, it.then)))
 }
 
-/// Whether SPEC 10.2 accepts the places of all events.
+/// Returns whether SPEC 10.2 accepts the places of all events.
 pub fn accepts_states_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
     let place = |node: NodeId| at[node.index()];
     let keeps_sides = excluding(network, plan).into_iter().all(|(one, other)| {
@@ -302,7 +302,7 @@ fn amount(network: &Network, used: UseId) -> i64 {
     amount.numerator()
 }
 
-/// Whether what is used stays within a resource in a plan, by the criteria of SPEC 11; and how far it goes.
+/// Returns whether what is used stays within a resource in a plan, by the criteria of SPEC 11; and how far it goes.
 pub fn levels(network: &Network, plan: &Plan, before: &Before<'_>) -> (bool, Vec<Levels>) {
     let mut is_within = true;
     let mut all = Vec::new();
@@ -352,7 +352,7 @@ fn peak(network: &Network, uses: &[UseId], before: &Before<'_>) -> i64 {
     peak
 }
 
-/// How far the level is from the first one at a consumption or a production, at worst.
+/// Returns how far the level is from the first one at a consumption or a production, at worst.
 fn reached(network: &Network, uses: &[UseId], event: UseId, before: &Before<'_>) -> i64 {
     let produces = |used: UseId| network.uses[used.index()].change == Change::Produces;
     let x = moment(network, event);
@@ -372,7 +372,8 @@ fn reached(network: &Network, uses: &[UseId], event: UseId, before: &Before<'_>)
     sum
 }
 
-/// Whether SPEC 11 accepts the places of all events: at every one for what is reusable, after every one for levels.
+/// Returns whether SPEC 11 accepts the places of all events: at every one for what is reusable, after every one for
+/// levels.
 pub fn accepts_resources_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
     network.resources.iter().enumerate().all(|(index, resource)| {
         let uses = uses_of(network, plan, index);

@@ -127,7 +127,7 @@ fn random_plan(network: &Network, rng: &mut Rng) -> Plan {
     plan
 }
 
-/// Whether orderings of uses join different selected uses of one resource.
+/// Returns whether orderings of uses join different selected uses of one resource.
 fn has_fitting_uses(network: &Network, plan: &Plan) -> bool {
     plan.uses_ordered.iter().all(|it| {
         let (first, then) = (&network.uses[it.first.index()], &network.uses[it.then.index()]);

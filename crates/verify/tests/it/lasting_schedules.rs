@@ -8,7 +8,8 @@ use crate::missions::{
     time,
 };
 
-/// What is said of the schedule of `text` that has these activities from start to end, all else as early as it can be.
+/// Returns what is said of the schedule of `text` that has these activities from start to end, all else as early as it
+/// can be.
 fn violations(text: &str, activities: &[(&str, i64, i64)], end: i64) -> Vec<Violation> {
     let network = network(text);
     let plan = plan(&network, Sketch::default());

@@ -103,7 +103,7 @@ pub fn event(network: &Network, name: &str) -> NodeId {
     Names::new(network).event(name).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-/// What the choices select (SPEC 3.1), node by node from the start.
+/// Returns what the choices select (SPEC 3.1), node by node from the start.
 pub fn closure(network: &Network, choices: &[Choice]) -> (Vec<bool>, Vec<bool>) {
     let mut nodes = vec![false; network.nodes.len()];
     let mut arcs = vec![false; network.arcs.len()];
@@ -219,7 +219,7 @@ pub fn units(time: Time) -> i64 {
     time.numerator()
 }
 
-/// Whether a label is of a state variable.
+/// Returns whether a label is of a state variable.
 pub fn is_lasting(network: &Network, label: LabelId) -> bool {
     network.variables[network.labels[label.index()].literal.variable.index()].is_lasting
 }

@@ -33,14 +33,14 @@ fn violations(network: &Network, plan: &Plan) -> Vec<Violation> {
     verdict.violations
 }
 
-/// What is said of the good plan after `change`.
+/// Returns what is said of the good plan after `change`.
 fn changed(change: impl FnOnce(&Network, &mut Plan)) -> Vec<Violation> {
     let (network, mut plan) = good();
     change(&network, &mut plan);
     violations(&network, &plan)
 }
 
-/// What is said of a plan of [`TEXT`].
+/// Returns what is said of a plan of [`TEXT`].
 fn said_of(sketch: Sketch<'_>) -> Vec<Violation> {
     let network = network(TEXT);
     violations(&network, &plan(&network, sketch))

@@ -102,7 +102,7 @@ impl AppState {
         self.derived.seen.get(&row.of).is_none_or(|seen| changes.ne(seen.iter().copied()))
     }
 
-    /// How often an input has changed.
+    /// Returns how often an input has changed.
     fn changes_of(&self, input: Input) -> u64 {
         match input {
             Text => self.document.revision(),

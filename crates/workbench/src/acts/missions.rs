@@ -397,7 +397,7 @@ fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Why a text in another encoding is not opened.
+/// Returns why a text in another encoding is not opened.
 fn encoding_refusal(name: &str, bytes: &[u8]) -> Option<String> {
     let encoding = if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         "UTF-16"
@@ -413,7 +413,7 @@ fn encoding_refusal(name: &str, bytes: &[u8]) -> Option<String> {
     ))
 }
 
-/// Whether a file is a mission: its name says so, or it reads as one.
+/// Returns whether a file is a mission: its name says so, or it reads as one.
 fn reads_as_mission(name: &str, text: &str) -> bool {
     let reads = || {
         let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
@@ -426,7 +426,7 @@ fn reads_as_mission(name: &str, text: &str) -> bool {
     says_mission(name) || reads()
 }
 
-/// Whether a file's name says that it is a mission's text.
+/// Returns whether a file's name says that it is a mission's text.
 fn says_mission(name: &str) -> bool {
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
     FileKind::Mission.extensions().contains(&extension.as_str())

@@ -329,7 +329,7 @@ impl AppState {
         }
     }
 
-    /// What the planning core is to execute, if it was not asked already.
+    /// Returns what the planning core is to execute, if it was not asked already.
     pub(crate) fn run_to_ask_for(&mut self) -> Option<Request> {
         let update = self.update_with_plan().filter(|_| self.window.workspace == Workspace::Execute)?;
         if self.execution.is_asked(&update) { None } else { Some(self.execution.request(update)) }

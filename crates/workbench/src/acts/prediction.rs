@@ -13,7 +13,7 @@ use crate::state::search::wording::choice;
 use crate::state::search::{Recording, SearchCommand};
 
 impl AppState {
-    /// What the stop has the student predict.
+    /// Returns what the stop has the student predict.
     pub fn forecast(&self) -> Option<&Forecast> {
         match &self.lesson.stop()?.ask.as_ref()?.answer {
             Answer::Prediction(forecast) => Some(forecast),
@@ -21,7 +21,7 @@ impl AppState {
         }
     }
 
-    /// What can be predicted now; empty if nothing can.
+    /// Returns what can be predicted now; empty if nothing can.
     pub fn forecasts(&self) -> Vec<String> {
         let Some(forecast) = self.forecast().filter(|_| self.can_predict()) else { return Vec::new() };
         match forecast {

@@ -49,8 +49,8 @@ impl Advanced {
 const SMOOTH_STEPS_PER_SEC: f64 = 20.0;
 
 impl AppState {
-    /// What the keys that play and step drive: a growth on the terrain while the user is there, a control program where
-    /// there is one, the search while a step of it or its panel is looked at, and time otherwise.
+    /// Returns what the keys that play and step drive: a growth on the terrain while the user is there, a control
+    /// program where there is one, the search while a step of it or its panel is looked at, and time otherwise.
     pub fn track(&self) -> Track {
         if self.terrain.growth.shown().is_some() && self.window.active_panel == PanelKind::Terrain {
             return Track::Growth;
@@ -67,7 +67,7 @@ impl AppState {
         }
     }
 
-    /// Whether the track that the keys drive plays.
+    /// Returns whether the track that the keys drive plays.
     pub fn is_playing(&self) -> bool {
         match self.track() {
             Track::Growth => self.terrain.growth.is_playing,

@@ -154,12 +154,12 @@ impl CommandSender {
         self.commands.push(command);
     }
 
-    /// What was asked for, in order.
+    /// Returns what was asked for, in order.
     pub fn take(&mut self) -> Vec<Command> {
         std::mem::take(&mut self.commands)
     }
 
-    /// Whether nothing was asked for.
+    /// Returns whether nothing was asked for.
     pub fn is_empty(&self) -> bool {
         self.commands.is_empty()
     }

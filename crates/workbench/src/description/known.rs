@@ -32,7 +32,7 @@ impl<'a> Description<'a> {
         self.state.shown().map(AsRef::as_ref)
     }
 
-    /// What is known of the present text, complete.
+    /// Returns what is known of the present text, complete.
     pub(super) fn fresh(&self) -> Option<&'a Snapshot> {
         self.shown().filter(|shown| self.is_complete(shown))
     }
@@ -75,7 +75,7 @@ impl<'a> Description<'a> {
         self.state.selection.kind()
     }
 
-    /// How many disturbances the run has.
+    /// Returns how many disturbances the run has.
     pub(super) fn disturbances(&self) -> usize {
         self.state.execution.disturbances().len()
     }
@@ -128,12 +128,12 @@ impl<'a> Description<'a> {
         self.state.review.current().map(AsRef::as_ref)
     }
 
-    /// What was predicted at the stop of the lesson.
+    /// Returns what was predicted at the stop of the lesson.
     pub(super) fn predictions(&self) -> &'a Predictions {
         self.state.lesson.predictions()
     }
 
-    /// What the last sample of the growth did.
+    /// Returns what the last sample of the growth did.
     pub(super) fn last_sample(&self) -> Option<&'a GrowthStep> {
         self.state.terrain.growth.shown()?.last()
     }
@@ -146,7 +146,7 @@ impl<'a> Description<'a> {
         self.state.automaton.moment()
     }
 
-    /// What the last proof says of a property.
+    /// Returns what the last proof says of a property.
     pub(super) fn verdict(&self, property: &str) -> Option<&ProgramVerdict> {
         let proof = self.program()?.proof.as_ref()?;
         proof.verdicts.iter().find(|verdict| verdict.property == property)

@@ -149,7 +149,7 @@ pub(super) fn vehicles(state: &AppState, snapshot: &Snapshot) -> Vec<Vehicle> {
         .collect()
 }
 
-/// How high over the ground a vehicle of this model is drawn; 0 for what drives.
+/// Returns how high over the ground a vehicle of this model is drawn; 0 for what drives.
 fn flight_height_m(world: &World, model: &str) -> f64 {
     match snapshot::vehicle::model(world, model).map(|model| model.drive) {
         Some(motion::Drive::Flight { altitude_band_m: [low, high], .. }) => f64::midpoint(low, high),

@@ -70,7 +70,7 @@ fn lesson(state: &AppState) -> Option<String> {
     Some(format!("lesson={}&stop={}", lesson.name, state.lesson.at() + 1))
 }
 
-/// Whether nothing was opened yet.
+/// Returns whether nothing was opened yet.
 pub(super) fn is_first_example(state: &AppState) -> bool {
     state.library.open_id().is_none() && state.mission == mission_file::EXAMPLES[0].name
 }
@@ -147,7 +147,7 @@ const VERSION: u32 = 2;
 /// program to another.
 const MAX_LINK_CHARACTERS: usize = 32_000;
 
-/// Whether a link works in all browsers.
+/// Returns whether a link works in all browsers.
 pub fn is_link_short(link: &str) -> bool {
     link.len() <= MAX_LINK_CHARACTERS
 }

@@ -6,7 +6,7 @@ use crate::state::AppState;
 use crate::state::search::wording::event;
 use crate::state::snapshots::Status;
 
-/// What is to be said now. It is said when it is other than before; empty while there is nothing new to say.
+/// Returns what is to be said now. It is said when it is other than before; empty while there is nothing new to say.
 pub fn announcement(state: &AppState) -> String {
     let words = [plan_words, step_words, program_words, lesson_words, message_words];
     let parts: Vec<String> = words.into_iter().filter_map(|tell| tell(state)).collect();
@@ -60,7 +60,7 @@ fn program_words(state: &AppState) -> Option<String> {
     (state.automaton.is_control() && at > 0).then(|| format!("Step {at} of the program."))
 }
 
-/// How the last answer was judged; before one is given, which step of the lesson is open.
+/// Returns how the last answer was judged; before one is given, which step of the lesson is open.
 fn lesson_words(state: &AppState) -> Option<String> {
     let (open, stop) = (state.lesson.open()?, state.lesson.stop()?);
     let place =

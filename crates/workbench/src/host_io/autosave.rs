@@ -191,7 +191,7 @@ impl Autosave {
         }
     }
 
-    /// Whether something else is to be opened as soon as the shelf is known.
+    /// Returns whether something else is to be opened as soon as the shelf is known.
     pub fn wants_another(&self) -> bool {
         self.wanted != Wanted::Nothing
     }

@@ -55,7 +55,7 @@ pub enum Forecast {
 }
 
 impl Forecast {
-    /// What someone predicts who expects no more of it.
+    /// Returns what someone predicts who expects no more of it.
     pub const fn nothing(&self) -> Option<&'static str> {
         match self {
             Self::Decision => Some("No further decision"),
@@ -94,8 +94,8 @@ pub enum Action {
 }
 
 impl Answer {
-    /// Whether what was answered is right, and nothing while that is not known: the number of a choice from 0, a number
-    /// or a word; a task is judged by the state alone, and a prediction by what is shown next.
+    /// Returns whether what was answered is right, and nothing while that is not known: the number of a choice from 0,
+    /// a number or a word; a task is judged by the state alone, and a prediction by what is shown next.
     pub fn is_right(&self, given: &str, known: &dyn Known) -> Option<bool> {
         match self {
             Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(known),
@@ -115,8 +115,8 @@ impl Answer {
         }
     }
 
-    /// What would be right now, as someone would give it; nothing while that is not known, for a task, and for a
-    /// prediction.
+    /// Returns what would be right now, as someone would give it; nothing while that is not known, for a task, and for
+    /// a prediction.
     pub fn right_now(&self, known: &dyn Known) -> Option<String> {
         match self {
             Self::Choice(choices) => {
@@ -147,7 +147,7 @@ fn number_in(given: &str) -> Option<Rational> {
     number.trim().parse().ok().filter(|_| is_unit)
 }
 
-/// What someone said, however it is spelled: `(x = a)` is `x=a`, and `b, a` is `a, b`.
+/// Returns what someone said, however it is spelled: `(x = a)` is `x=a`, and `b, a` is `a, b`.
 fn words_in(given: &str) -> Vec<String> {
     let plain: String = given.to_lowercase().chars().filter(|it| !"`\"“”„'’".contains(*it)).collect();
     let plain = plain.trim().trim_end_matches('.');

@@ -75,7 +75,7 @@ impl Expression {
         }
     }
 
-    /// What it comes to now; nothing while something in it is not known, or does not exist.
+    /// Returns what it comes to now; nothing while something in it is not known, or does not exist.
     pub fn value(&self, known: &dyn Known) -> Option<Value> {
         match self {
             Self::Constant(value) => Some(value.clone()),
@@ -97,7 +97,7 @@ impl Expression {
         }
     }
 
-    /// Whether it is true now; nothing if that is not known.
+    /// Returns whether it is true now; nothing if that is not known.
     pub fn holds(&self, known: &dyn Known) -> Option<bool> {
         match self.value(known)? {
             Value::Truth(truth) => Some(truth),
@@ -114,7 +114,7 @@ impl Expression {
     }
 }
 
-/// What `left operator right` comes to; words are equal whatever their case.
+/// Returns what `left operator right` comes to; words are equal whatever their case.
 fn combined(left: &Value, operator: Operator, right: &Value) -> Option<Value> {
     use Operator::{Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Minus, NotEqual, Over, Plus, Times};
     let truth = |truth: bool| Some(Value::Truth(truth));
@@ -268,7 +268,7 @@ impl<'a> Reader<'a> {
         Ok(Expression::Fact(fact, argument.to_owned()))
     }
 
-    /// What is in parentheses, which may hold others: names have them.
+    /// Returns what is in parentheses, which may hold others: names have them.
     fn argument(&mut self) -> Result<&'a str, String> {
         let mut depth = 0_u32;
         for (at, letter) in self.rest.char_indices() {

@@ -27,7 +27,7 @@ pub enum Of {
 
 /// Gives the values of facts.
 pub trait Known {
-    /// What a fact is now, of what is in its parentheses; nothing while that is not known or does not exist.
+    /// Returns what a fact is now, of what is in its parentheses; nothing while that is not known or does not exist.
     fn value_of(&self, fact: &str, of: &str) -> Option<Value>;
 }
 

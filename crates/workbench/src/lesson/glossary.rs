@@ -125,7 +125,7 @@ impl Glossary {
     }
 }
 
-/// Where `word` is in `text` as whole words, whatever their case.
+/// Returns where `word` is in `text` as whole words, whatever their case.
 fn find_word(text: &str, word: &str) -> Option<(usize, usize)> {
     let is_letter = |letter: char| letter.is_alphanumeric() || letter == '-' || letter == '_';
     text.char_indices().find_map(|(from, _)| {

@@ -223,7 +223,7 @@ impl Lesson {
     }
 }
 
-/// Whether a fence holds a mission or a control program.
+/// Returns whether a fence holds a mission or a control program.
 fn is_mission(info: &str) -> bool {
     first_word(info) == "rmpl"
 }

@@ -147,7 +147,7 @@ impl Library {
         self.missions.iter_mut().find(|mission| mission.id == *id)
     }
 
-    /// What the user has open.
+    /// Returns what the user has open.
     pub fn open(&self) -> &Open {
         &self.open
     }
@@ -478,7 +478,7 @@ impl Library {
     }
 }
 
-/// What is copied, of a name such as `Threats (copy 2)`.
+/// Returns what is copied, of a name such as `Threats (copy 2)`.
 fn stem_of_copy(name: &str) -> Option<&str> {
     let (stem, number) = name.strip_suffix(')')?.rsplit_once(" (copy")?;
     number.chars().all(|c| c == ' ' || c.is_ascii_digit()).then_some(stem)

@@ -50,7 +50,7 @@ pub(super) fn hitting(_: &AppState, arguments: &Value) -> Result<Command, String
     Ok(Command::Automaton(command))
 }
 
-/// What is known of a variable of a program without a plant; without a value, nothing is.
+/// Returns what is known of a variable of a program without a plant; without a value, nothing is.
 pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, String> {
     let automaton = state.automaton.program().and_then(Program::automaton).ok_or("no control program")?;
     let name = text_argument(arguments, "variable")?;
@@ -66,7 +66,7 @@ pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, 
     Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
 }
 
-/// What is to be proven: `properties`, `faults` and `knowledge`; what is not given stays.
+/// Returns what is to be proven: `properties`, `faults` and `knowledge`; what is not given stays.
 pub(super) fn proof(state: &AppState, arguments: &Value) -> Result<Command, String> {
     let mut settings = state.automaton.proof.settings.clone();
     if let Some(properties) = arguments.get("properties") {

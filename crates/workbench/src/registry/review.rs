@@ -269,7 +269,7 @@ fn key(arguments: &Value) -> Result<PublicKey, String> {
     PublicKey::read(text).ok_or_else(|| format!("“{text}” is not a public key"))
 }
 
-/// Who does it: the argument `name`, or what it is called, and `role`.
+/// Returns who does it: the argument `name`, or what it is called, and `role`.
 fn person(arguments: &Value, name: &str) -> Result<Person, String> {
     let role = arguments.get("role").and_then(Value::as_str).unwrap_or_default();
     Ok(Person { name: text_argument(arguments, name)?.to_owned(), role: role.to_owned() })
@@ -287,7 +287,7 @@ fn item(state: &AppState, arguments: &Value) -> Result<LineKey, String> {
     Ok(LineKey::new(section, line))
 }
 
-/// What the flight rule of a name says.
+/// Returns what the flight rule of a name says.
 fn rule(state: &AppState, arguments: &Value) -> Result<String, String> {
     let name = arguments.get("rule").and_then(Value::as_str);
     let mut rules = state.review.record().rules().rules.iter();
@@ -295,7 +295,7 @@ fn rule(state: &AppState, arguments: &Value) -> Result<String, String> {
     found.map(|rule| rule.rule.clone()).ok_or_else(|| "\"rule\" must be the name of a flight rule".to_owned())
 }
 
-/// What is said with it, if anything.
+/// Returns what is said with it, if anything.
 fn words(arguments: &Value) -> String {
     arguments.get("text").and_then(Value::as_str).unwrap_or_default().trim().to_owned()
 }

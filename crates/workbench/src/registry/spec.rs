@@ -111,7 +111,7 @@ impl CommandSpec {
         }
     }
 
-    /// Whether it is in menus and in the palette.
+    /// Returns whether it is in menus and in the palette.
     pub fn is_plain(&self) -> bool {
         matches!(self.build, Build::Plain(_))
     }

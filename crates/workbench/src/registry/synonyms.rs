@@ -91,7 +91,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
 /// Queries with fewer letters find names only.
 const MIN_LETTERS: usize = 3;
 
-/// How well another word for a command or a panel begins with `query`; `None` if none does.
+/// Returns how well another word for a command or a panel begins with `query`; `None` if none does.
 pub(super) fn score_of_synonyms(named: &str, query: &str) -> Option<i32> {
     let wanted = query.trim().to_lowercase();
     if wanted.chars().count() < MIN_LETTERS {

@@ -89,7 +89,7 @@ impl ProgramPart {
     /// All parts, in the order in which they are offered.
     pub const ALL: [Self; 5] = [Self::Automaton, Self::Plant, Self::ManyRuns, Self::Proof, Self::Steps];
 
-    /// What it is called by commands.
+    /// Returns what it is called by commands.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Automaton => "automaton",
@@ -166,12 +166,12 @@ impl AutomatonState {
         self.wants_answer = is_control;
     }
 
-    /// Whether there is something to ask the core.
+    /// Returns whether there is something to ask the core.
     pub(crate) const fn wants_answer(&self) -> bool {
         self.wants_answer
     }
 
-    /// What to ask the core.
+    /// Returns what to ask the core.
     pub(crate) fn request(&mut self, document: &Document) -> ControlRun {
         self.wants_answer = false;
         self.asked += 1;
@@ -237,7 +237,7 @@ impl AutomatonState {
         self.proof.give_up();
     }
 
-    /// Whether the text is a control program.
+    /// Returns whether the text is a control program.
     pub const fn is_control(&self) -> bool {
         self.is_control
     }
@@ -247,12 +247,12 @@ impl AutomatonState {
         self.is_waiting.then_some((self.coming.len(), self.log.len() + 1))
     }
 
-    /// What the text comes to; nothing if it is a mission, or not known yet.
+    /// Returns what the text comes to; nothing if it is a mission, or not known yet.
     pub const fn program(&self) -> Option<&Program> {
         self.program.as_ref()
     }
 
-    /// How things stand at the moment that is looked at.
+    /// Returns how things stand at the moment that is looked at.
     pub fn moment(&self) -> Option<&Moment> {
         self.moments.get(self.at).map(Arc::as_ref)
     }
@@ -262,7 +262,7 @@ impl AutomatonState {
         &self.moments
     }
 
-    /// How many steps were taken before the moment that is looked at.
+    /// Returns how many steps were taken before the moment that is looked at.
     pub const fn at(&self) -> usize {
         self.at
     }
@@ -272,7 +272,7 @@ impl AutomatonState {
         self.conflicts.as_ref()
     }
 
-    /// Whether the known conflicts belong to a step other than the one before the current moment.
+    /// Returns whether the known conflicts belong to a step other than the one before the current moment.
     pub(crate) fn has_other_conflicts(&self) -> bool {
         match (self.last_step(), &self.conflicts) {
             (Some((model, before, after)), Some(known)) => !known.is_of(model, before, after),
@@ -305,13 +305,13 @@ impl AutomatonState {
         change(self.diagnosing.insert(kept.unwrap_or_else(|| root.clone())), model);
     }
 
-    /// What comes from outside in the step after the moment that is looked at.
+    /// Returns what comes from outside in the step after the moment that is looked at.
     pub fn next_input(&self) -> Input {
         let logged = self.pending.as_ref().or_else(|| self.log.get(self.target));
         logged.cloned().unwrap_or_else(|| self.usual_input())
     }
 
-    /// What came from outside in the step before the moment that is looked at.
+    /// Returns what came from outside in the step before the moment that is looked at.
     pub fn last_input(&self) -> Option<&Input> {
         self.log.get(self.target.checked_sub(1)?)
     }
@@ -474,7 +474,7 @@ impl AutomatonState {
         true
     }
 
-    /// Whether the program has not ended at the moment that is looked at, as far as that is known.
+    /// Returns whether the program has not ended at the moment that is looked at, as far as that is known.
     pub fn can_step(&self) -> bool {
         let goes_on = match self.moments.get(self.target) {
             Some(moment) if self.target < self.fresh => {
@@ -527,7 +527,7 @@ impl AutomatonState {
         self.error = None;
     }
 
-    /// What is known stays known; a fault happens once.
+    /// Returns what is known stays known; a fault happens once.
     fn usual_input(&self) -> Input {
         let known = self.last_input().map(|input| input.known.clone()).unwrap_or_default();
         Input { known, ..Input::default() }

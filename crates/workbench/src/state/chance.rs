@@ -46,7 +46,7 @@ impl Default for ChanceState {
 }
 
 impl ChanceState {
-    /// Whether runs are being made.
+    /// Returns whether runs are being made.
     pub const fn is_running(&self) -> bool {
         self.running.is_some()
     }
@@ -56,7 +56,7 @@ impl ChanceState {
         self.running = None;
     }
 
-    /// What the runs of this content came to: see [`review::content_hash`].
+    /// Returns what the runs of this content came to: see [`review::content_hash`].
     pub fn of_content(&self, content_hash: &str) -> Option<&Arc<Robustness>> {
         self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| found)
     }
@@ -75,7 +75,7 @@ impl ChanceState {
         self.of_content.truncate(MAX_CONTENTS);
     }
 
-    /// How many runs have been made of those asked for last.
+    /// Returns how many runs have been made of those asked for last.
     pub const fn runs_made(&self) -> u64 {
         self.tally.runs
     }

@@ -51,7 +51,7 @@ fn reviewed(review: &Review) -> Reviewed {
 }
 
 impl ContradictState {
-    /// How many schedules and runs have been tried, and how many are to be; `None` while nothing is tried.
+    /// Returns how many schedules and runs have been tried, and how many are to be; `None` while nothing is tried.
     pub fn progress(&self) -> Option<[u64; 2]> {
         self.running.as_ref().map(|running| running.progress)
     }
@@ -61,7 +61,7 @@ impl ContradictState {
         self.running.as_ref()?.only.as_ref()
     }
 
-    /// How a line of a review was tried.
+    /// Returns how a line of a review was tried.
     pub fn of_line(&self, review: &Review, line: &LineKey) -> Option<&Tried> {
         self.of_review(review).find(|tried| tried.line == *line)
     }
@@ -146,7 +146,7 @@ impl ContradictState {
         window.done(self.summary(&review));
     }
 
-    /// What was found of a review, in one sentence.
+    /// Returns what was found of a review, in one sentence.
     fn summary(&self, review: &Review) -> String {
         let count = |wanted: Verdict| self.of_review(review).filter(|it| it.verdict() == wanted).count();
         let [survived, contradicted] = [Verdict::Survived, Verdict::Contradicted].map(count);

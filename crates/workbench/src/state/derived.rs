@@ -46,7 +46,7 @@ pub struct Derived {
 }
 
 impl Derived {
-    /// What was computed after the last command, answer or moment, in order.
+    /// Returns what was computed after the last command, answer or moment, in order.
     pub fn latest(&self) -> &[Derivation] {
         &self.latest
     }

@@ -53,7 +53,7 @@ impl StepConflicts {
         Self { model: Arc::clone(model), between, root, diagnoses: OnceLock::new() }
     }
 
-    /// Whether this is the step from `before` to `after`.
+    /// Returns whether this is the step from `before` to `after`.
     pub(super) fn is_of(&self, model: &Arc<Model>, before: &Arc<Moment>, after: &Arc<Moment>) -> bool {
         let [first, last] = &self.between;
         Arc::ptr_eq(&self.model, model) && Arc::ptr_eq(first, before) && Arc::ptr_eq(last, after)
@@ -87,7 +87,7 @@ impl Diagnosing {
         Some(Self { expected, observation: record.observation.clone(), tree, refused: None })
     }
 
-    /// Whether two trees are about the same expectations and observations.
+    /// Returns whether two trees are about the same expectations and observations.
     pub(super) fn is_about(&self, other: &Self) -> bool {
         self.expected == other.expected && self.observation == other.observation
     }
@@ -97,7 +97,7 @@ impl Diagnosing {
         &self.tree
     }
 
-    /// What was refused last, with its node.
+    /// Returns what was refused last, with its node.
     pub fn refused(&self) -> Option<&(usize, Refusal)> {
         self.refused.as_ref()
     }
@@ -167,7 +167,7 @@ pub fn set_text(model: &Model, components: &[ComponentId]) -> String {
     format!("{{{}}}", names.join(", "))
 }
 
-/// What became of a node, in words.
+/// Returns what became of a node, in words.
 pub fn label_text(model: &Model, tree: &HittingTree, label: HittingLabel) -> String {
     match label {
         HittingLabel::Open => "open".to_owned(),
@@ -180,7 +180,7 @@ pub fn label_text(model: &Model, tree: &HittingTree, label: HittingLabel) -> Str
     }
 }
 
-/// Why a node cannot become what someone wanted, and what to do.
+/// Returns why a node cannot become what someone wanted, and what to do.
 pub fn refusal_text(model: &Model, tree: &HittingTree, refusal: &Refusal) -> String {
     match refusal {
         Refusal::Unknown => "This node is no longer open. Choose an open one.".to_owned(),

@@ -15,7 +15,7 @@ pub enum ScheduleForm {
 }
 
 impl ScheduleForm {
-    /// What it is called in dialogs.
+    /// Returns what it is called in dialogs.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Csv => "CSV schedule",
@@ -43,7 +43,7 @@ impl ScheduleForm {
         all.into_iter().find(|form| form.name() == name)
     }
 
-    /// Whether its times are dates, so that it must be known when the mission starts.
+    /// Returns whether its times are dates, so that it must be known when the mission starts.
     pub const fn needs_epoch(self) -> bool {
         matches!(self, Self::OpenMct | Self::Icalendar | Self::PlanDev)
     }

@@ -70,7 +70,7 @@ impl Writing<'_> {
         }
     }
 
-    /// Whether a text that is pasted, with nothing selected, is the line that was copied last.
+    /// Returns whether a text that is pasted, with nothing selected, is the line that was copied last.
     fn is_copied_line(&self, text: &str) -> bool {
         let is_it = |line: &String| line.ends_with('\n') && *line == text.replace("\r\n", "\n");
         self.document.caret().is_empty() && self.editor.copied_line.as_ref().is_some_and(is_it)

@@ -30,7 +30,7 @@ pub(crate) fn names(document: &Document, main_text: SmolStr) -> Vec<SmolStr> {
     std::iter::once(main_text).chain(document.headings().iter().filter_map(named)).collect()
 }
 
-/// Which file of a mission the caret is in.
+/// Returns which file of a mission the caret is in.
 pub(crate) fn at_caret(document: &Document) -> usize {
     let line = document.line_at(document.caret().head);
     document.headings().partition_point(|&heading| heading <= line)
@@ -179,7 +179,7 @@ impl Writing<'_> {
     }
 }
 
-/// How the file `importer` names another one.
+/// Returns how the file `importer` names another one.
 fn relative(importer: &str, name: &str) -> String {
     let folder = importer.rsplit_once('/').map_or("", |(folder, _)| folder);
     let steps: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
@@ -188,8 +188,8 @@ fn relative(importer: &str, name: &str) -> String {
     format!("{}{rest}", "../".repeat(steps.len() - common))
 }
 
-/// Where a file is imported in the main text, and the line that does it: after its last import, otherwise in front of
-/// its first declaration.
+/// Returns where a file is imported in the main text, and the line that does it: after its last import, otherwise in
+/// front of its first declaration.
 fn import_line(text: &str, name: &str) -> (usize, String) {
     let main = files::split(text).first().map_or("", |(_, text)| text);
     let (mut at, mut place) = (0, None);

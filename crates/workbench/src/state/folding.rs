@@ -29,7 +29,7 @@ pub struct Region {
 }
 
 impl Folding {
-    /// Which line stands where.
+    /// Returns which line stands where.
     pub const fn rows(&self) -> &Rows {
         &self.rows
     }
@@ -133,7 +133,7 @@ impl Folding {
     }
 }
 
-/// What can be folded, by first line; of several that begin in one line, the largest.
+/// Returns what can be folded, by first line; of several that begin in one line, the largest.
 pub fn regions(document: &Document, parse: &Parse) -> Vec<Region> {
     let mut largest = BTreeMap::<usize, Region>::new();
     for fold in folds(parse) {

@@ -27,12 +27,12 @@ impl KeysState {
         &self.ring
     }
 
-    /// Why they are not kept beyond this run, if they could not be.
+    /// Returns why they are not kept beyond this run, if they could not be.
     pub fn unkept(&self) -> Option<&str> {
         self.unkept.as_deref()
     }
 
-    /// What signs as the person of this name; `Err` says that nothing does.
+    /// Returns what signs as the person of this name; `Err` says that nothing does.
     pub(crate) fn secret(&self, name: &str) -> Result<(PublicKey, SecretKey), String> {
         let own = self.ring.own_named(name).and_then(|person| Some((person, person.secret.clone()?)));
         match own {

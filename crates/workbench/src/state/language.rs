@@ -88,17 +88,17 @@ impl Language {
         }
     }
 
-    /// Whether the text is a network of another tool.
+    /// Returns whether the text is a network of another tool.
     pub const fn is_network(&self) -> bool {
         matches!(self.notation, Notation::Network(_))
     }
 
-    /// Whether the text is a control program.
+    /// Returns whether the text is a control program.
     pub const fn is_control(&self) -> bool {
         matches!(self.notation, Notation::Control(..))
     }
 
-    /// What the pieces of the text in `range` are, in textual order.
+    /// Returns what the pieces of the text in `range` are, in textual order.
     pub fn roles(&self, range: Span) -> Vec<(Span, SyntaxRole)> {
         match &self.notation {
             Notation::Mission(parse) => editor::highlight(parse, range)
@@ -131,7 +131,7 @@ impl Language {
     }
 }
 
-/// What planning found out, for hovering over the text.
+/// Returns what planning found out, for hovering over the text.
 pub fn evaluation(snapshot: &snapshot::Snapshot) -> Evaluation {
     let Some(network) = snapshot.network.as_deref() else { return Evaluation::default() };
     let invocations = network
@@ -179,7 +179,8 @@ fn read(text: Arc<str>) -> Notation {
     }
 }
 
-/// Whether a mission's text may be in another notation since: only a large edit, or one of a short text, does that.
+/// Returns whether a mission's text may be in another notation since: only a large edit, or one of a short text, does
+/// that.
 fn may_change_notation(shift: Shift, text: &str) -> bool {
     let is_large = shift.inserted > LARGE_EDIT_BYTES
         || shift.removed > LARGE_EDIT_BYTES

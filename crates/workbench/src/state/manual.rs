@@ -36,7 +36,7 @@ impl ManualState {
         self.place.as_ref().map(|(page, section)| (*page, section.as_str()))
     }
 
-    /// What is looked for.
+    /// Returns what is looked for.
     pub fn query(&self) -> &str {
         &self.query
     }
@@ -51,7 +51,7 @@ impl ManualState {
         self.opened
     }
 
-    /// Whether there is a place to go back to.
+    /// Returns whether there is a place to go back to.
     pub fn can_go_back(&self) -> bool {
         !self.before.is_empty()
     }

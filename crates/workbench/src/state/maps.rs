@@ -46,7 +46,7 @@ impl Maps {
         self.read.get(snapshot.map.as_ref()?)
     }
 
-    /// What the growth of a search tree is made from, if the mission and its ground are there.
+    /// Returns what the growth of a search tree is made from, if the mission and its ground are there.
     pub(crate) fn growth_input<'a>(
         &self,
         snapshots: &'a Snapshots,
@@ -113,7 +113,7 @@ impl Maps {
 }
 
 impl WaitingLabel {
-    /// Whether its image is a file of this name, wherever that lies.
+    /// Returns whether its image is a file of this name, wherever that lies.
     fn describes(&self, file_name: &str) -> bool {
         self.image_name.rsplit(['/', '\\']).next().is_some_and(|it| it.eq_ignore_ascii_case(file_name))
     }

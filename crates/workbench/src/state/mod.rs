@@ -219,7 +219,7 @@ impl AppState {
         }
     }
 
-    /// Which layout the panels have.
+    /// Returns which layout the panels have.
     pub fn arrangement(&self) -> Arrangement {
         if self.lesson.is_beside() {
             return Arrangement::Lesson;
@@ -227,12 +227,12 @@ impl AppState {
         Arrangement::new(self.window.workspace, self.language.is_control())
     }
 
-    /// What the panels show: see [`Snapshots::shown`].
+    /// Returns what the panels show: see [`Snapshots::shown`].
     pub fn shown(&self) -> Option<&Arc<Snapshot>> {
         self.snapshots.shown()
     }
 
-    /// Where the plan is, for the status display.
+    /// Returns where the plan is, for the status display.
     pub fn status(&self) -> Status {
         match self.snapshots.status(self.document.revision()) {
             Status::Empty if self.automaton.is_control() => Status::Program,
@@ -240,7 +240,7 @@ impl AppState {
         }
     }
 
-    /// Whether the theme that is shown is light on dark.
+    /// Returns whether the theme that is shown is light on dark.
     pub fn is_dark(&self) -> bool {
         match self.settings.theme {
             ThemeChoice::System => !self.system.is_light,
@@ -249,7 +249,7 @@ impl AppState {
         }
     }
 
-    /// Whether the present text has been worked out for so long that someone may want to stop it.
+    /// Returns whether the present text has been worked out for so long that someone may want to stop it.
     pub fn is_long_at_work(&self) -> bool {
         self.status() == Status::Working && self.frame.now_secs - self.frame.asked_secs > LONG_SECS
     }
@@ -261,18 +261,18 @@ impl AppState {
         secs.max(0.0) as u64
     }
 
-    /// Whether the present text has a plan, and a better one is looked for.
+    /// Returns whether the present text has a plan, and a better one is looked for.
     pub fn is_improving(&self) -> bool {
         self.snapshots.is_improving(self.document.revision())
     }
 
-    /// What panels draw: while a mission is executed, the plan followed at the time shown with what has happened;
-    /// otherwise [`AppState::shown`].
+    /// Returns what panels draw: while a mission is executed, the plan followed at the time shown with what has
+    /// happened; otherwise [`AppState::shown`].
     pub fn looked_at(&self) -> Option<&Arc<Snapshot>> {
         self.execution.snapshot().filter(|_| self.is_executing()).or_else(|| self.shown())
     }
 
-    /// Whether a run of the mission is shown.
+    /// Returns whether a run of the mission is shown.
     pub fn is_executing(&self) -> bool {
         self.window.workspace == Workspace::Execute
             && self
@@ -282,7 +282,7 @@ impl AppState {
                 .is_some_and(|(run, shown)| shown.revision == run.revision && shown.plan().is_some())
     }
 
-    /// Whether a run of the mission will be shown as soon as it is there.
+    /// Returns whether a run of the mission will be shown as soon as it is there.
     pub(crate) fn is_awaiting_run(&self) -> bool {
         self.window.workspace == Workspace::Execute
             && self.status() == Status::Plan
@@ -303,7 +303,7 @@ impl AppState {
         self.execution.run().map(AsRef::as_ref).filter(|_| self.is_executing())
     }
 
-    /// How robust the plan is, once runs were made of the present content.
+    /// Returns how robust the plan is, once runs were made of the present content.
     pub fn robustness(&self) -> Option<&Arc<Robustness>> {
         self.chance.of_content(self.review.hash()?)
     }
@@ -320,12 +320,12 @@ impl AppState {
         self.update_planned().filter(|_| self.shown().is_some_and(|shown| shown.plan().is_some()))
     }
 
-    /// What the open mission is known by: its id in the library, or the name of an original.
+    /// Returns what the open mission is known by: its id in the library, or the name of an original.
     pub fn mission_key(&self) -> SmolStr {
         self.library.open_id().map_or_else(|| self.mission.clone(), |id| id.0.clone())
     }
 
-    /// What the open mission is called on screen: examples have a title.
+    /// Returns what the open mission is called on screen: examples have a title.
     pub fn mission_title(&self) -> &str {
         match self.library.open() {
             Open::Original { kind: MissionKind::Example, .. } => {
@@ -346,7 +346,7 @@ impl AppState {
         files::names(&self.document, self.main_text())
     }
 
-    /// Which of them the caret is in.
+    /// Returns which of them the caret is in.
     pub fn file_at_caret(&self) -> usize {
         files::at_caret(&self.document)
     }

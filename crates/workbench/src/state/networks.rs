@@ -12,7 +12,7 @@ pub enum NetworkForm {
     Ptpn,
 }
 
-/// What a file with the text of a network ends in.
+/// Returns what a file with the text of a network ends in.
 pub(crate) fn network_ending(text: &str) -> &'static str {
     if is_ptpn(text) {
         ".tpn"

@@ -12,7 +12,7 @@ pub const NO_PLAN: &str = "E-NOPLAN";
 /// Reasons that are listed at most; the Plan panel has all of them.
 const MAX_REASONS: usize = 8;
 
-/// What is wrong with a text that has no plan; nothing if it has one, or if that is not known.
+/// Returns what is wrong with a text that has no plan; nothing if it has one, or if that is not known.
 pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
     let Some(planning) = snapshot.planning.as_ref().filter(|_| snapshot.plan().is_none()) else {
         return Vec::new();

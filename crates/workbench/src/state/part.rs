@@ -15,7 +15,7 @@ impl<T> Part<T> {
         Self { value, changes: 0 }
     }
 
-    /// How often it may have changed.
+    /// Returns how often it may have changed.
     pub const fn changes(&self) -> u64 {
         self.changes
     }

@@ -65,7 +65,7 @@ impl Pins {
         self.pinned.as_ref().map(PinnedPlan::pins).unwrap_or_default()
     }
 
-    /// Whether no event is pinned, and no run has started.
+    /// Returns whether no event is pinned, and no run has started.
     pub fn is_empty(&self) -> bool {
         self.pinned.as_ref().is_none_or(PinnedPlan::is_untouched)
     }

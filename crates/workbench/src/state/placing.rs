@@ -161,7 +161,7 @@ impl Names {
         Self { used: text.split(|c| !is_part(c)).map(SmolStr::new).collect() }
     }
 
-    /// Whether the text has a word, or a new name is that word.
+    /// Returns whether the text has a word, or a new name is that word.
     pub(super) fn contains(&self, word: &str) -> bool {
         self.used.contains(word)
     }

@@ -61,18 +61,18 @@ impl Default for ProgramChanceSettings {
 }
 
 impl ProgramChanceState {
-    /// Whether runs are being made.
+    /// Returns whether runs are being made.
     pub const fn is_running(&self) -> bool {
         self.is_running
     }
 
-    /// How the runs went that were made of a revision of the text; nothing if there were none.
+    /// Returns how the runs went that were made of a revision of the text; nothing if there were none.
     pub fn tally(&self, revision: u64) -> Option<&ProgramTally> {
         let is_of = self.asked.as_ref().is_some_and(|(asked, _)| *asked == revision);
         (is_of && self.tally.runs > 0).then_some(&self.tally)
     }
 
-    /// Which runs were asked for last.
+    /// Returns which runs were asked for last.
     pub fn asked(&self) -> Option<&ProgramChance> {
         self.asked.as_ref().map(|(_, chance)| chance)
     }

@@ -60,17 +60,17 @@ impl Default for ProofSettings {
 }
 
 impl ProgramProofState {
-    /// Whether a proof is under way.
+    /// Returns whether a proof is under way.
     pub const fn is_running(&self) -> bool {
         self.is_running
     }
 
-    /// How many states have been found.
+    /// Returns how many states have been found.
     pub const fn states(&self) -> usize {
         self.states
     }
 
-    /// What was asked of a revision of the text, and what was found; nothing if nothing was.
+    /// Returns what was asked of a revision of the text, and what was found; nothing if nothing was.
     pub fn answer(&self, revision: u64) -> Option<(&ProofQuestion, &Result<ProofAnswer, String>)> {
         let (_, question) = self.asked.as_ref().filter(|(asked, _)| *asked == revision)?;
         Some((question, self.answer.as_ref()?))
@@ -89,7 +89,7 @@ impl ProgramProofState {
         }
     }
 
-    /// Whether the core is to be asked.
+    /// Returns whether the core is to be asked.
     pub(crate) const fn is_wanted(&self) -> bool {
         self.is_wanted
     }
@@ -173,7 +173,8 @@ impl AutomatonState {
     }
 }
 
-/// Whether the page can step through a run: its programs estimate, and make their likeliest choices from the likeliest start.
+/// Returns whether the page can step through a run: its programs estimate, and make their likeliest choices from the
+/// likeliest start.
 pub fn can_step_through(question: &ProofQuestion, run: &Counterexample) -> bool {
     question.knowledge == Knowledge::Estimated
         && run.start == Move::default()

@@ -43,18 +43,18 @@ const FACTOR: u64 = 10;
 const MAX_CONTENTS: usize = 6;
 
 impl RuleProofState {
-    /// How many rules have been answered, and how many are to be; `None` while nothing is proven.
+    /// Returns how many rules have been answered, and how many are to be; `None` while nothing is proven.
     pub fn progress(&self) -> Option<[usize; 2]> {
         let running = self.running.as_ref()?;
         Some([running.total - running.waiting.len(), running.total])
     }
 
-    /// What was found of a rule.
+    /// Returns what was found of a rule.
     pub fn of_rule(&self, content_hash: &str, rule: &str) -> Option<&Proven> {
         self.of_content(content_hash).find(|proven| proven.rule == rule)
     }
 
-    /// What was found of all rules of a content.
+    /// Returns what was found of all rules of a content.
     pub fn of_content(&self, content_hash: &str) -> impl Iterator<Item = &Proven> {
         let known = self.found.iter().find(|(of, _)| of == content_hash);
         known.into_iter().flat_map(|(_, proven)| proven)
@@ -134,7 +134,7 @@ impl RuleProofState {
         window.done(self.summary(&content_hash));
     }
 
-    /// What was found of a content, in one sentence.
+    /// Returns what was found of a content, in one sentence.
     fn summary(&self, content_hash: &str) -> String {
         let all: Vec<&Verdict> = self.of_content(content_hash).map(|proven| &proven.verdict).collect();
         let count = |is: fn(&Verdict) -> bool| all.iter().filter(|it| is(it)).count();

@@ -39,7 +39,7 @@ pub enum Selection {
 }
 
 impl Selection {
-    /// Whether nothing is selected.
+    /// Returns whether nothing is selected.
     pub fn is_none(&self) -> bool {
         *self == Self::None
     }
@@ -61,8 +61,8 @@ impl Selection {
         snapshot.traverses.iter().any(|it| it.occurrence == occurrence).then_some(occurrence)
     }
 
-    /// Whether `occurrence` is to be drawn as selected: it is selected itself, or is an end of the selected link or
-    /// ordering.
+    /// Returns whether `occurrence` is to be drawn as selected: it is selected itself, or is an end of the selected
+    /// link or ordering.
     pub fn involves(&self, network: &Network, occurrence: OccurrenceId) -> bool {
         let owns = |label: LabelId| {
             network.labels.get(label.index()).and_then(|label| label.owner) == Some(occurrence)
@@ -79,7 +79,7 @@ impl Selection {
         }
     }
 
-    /// Whether an activity is written inside the selected decision or alternative.
+    /// Returns whether an activity is written inside the selected decision or alternative.
     fn is_around(&self, network: &Network, occurrence: OccurrenceId) -> bool {
         let outer = match self {
             Self::Decision(id) => network.decisions.get(id.index()).and_then(|decision| decision.span),
@@ -93,7 +93,7 @@ impl Selection {
         outer.zip(inner).is_some_and(|(outer, inner)| outer.contains(inner))
     }
 
-    /// Where the selection is written, for the editor to show.
+    /// Returns where the selection is written, for the editor to show.
     pub fn span(&self, snapshot: &Snapshot) -> Option<Span> {
         let world = &snapshot.program.world;
         let network = snapshot.network.as_deref();
@@ -122,7 +122,7 @@ impl Selection {
         }
     }
 
-    /// What is at a byte offset of the text: the thing with the smallest span around it.
+    /// Returns what is at a byte offset of the text: the thing with the smallest span around it.
     ///
     /// Among equals, `current` stays selected if it is one of them: the text of a definition represents all of its
     /// expansions.

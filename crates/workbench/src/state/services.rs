@@ -73,7 +73,7 @@ impl Writing<'_> {
         self.editor.popup = found.filter(|found| !is_written(found));
     }
 
-    /// What can be written at the caret, as a list.
+    /// Returns what can be written at the caret, as a list.
     fn completions(&self) -> Option<Popup> {
         let head = self.document.caret().head;
         let found = editor::complete(self.language.parse()?, head as u32);

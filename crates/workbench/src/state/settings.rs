@@ -147,7 +147,7 @@ pub struct PlanSettings {
 }
 
 impl PlanSettings {
-    /// What the core is asked to plan: the text of `revision`, in this way.
+    /// Returns what the core is asked to plan: the text of `revision`, in this way.
     pub fn update(&self, revision: u64, source: impl Into<Source>) -> Update {
         Update {
             revision,
@@ -276,7 +276,7 @@ pub struct TimelineView {
 }
 
 impl TimelineView {
-    /// What of it a chart shows.
+    /// Returns what of it a chart shows.
     pub const fn chart(&self) -> ChartOptions {
         ChartOptions {
             conditions: self.conditions,

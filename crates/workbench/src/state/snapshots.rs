@@ -72,12 +72,12 @@ impl Snapshots {
         self.latest = Some(snapshot);
     }
 
-    /// What is wrong with the text of the latest answer, that it has no plan included; in textual order.
+    /// Returns what is wrong with the text of the latest answer, that it has no plan included; in textual order.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
 
-    /// Whether a compiled network waits for its plan, while an older one is shown.
+    /// Returns whether a compiled network waits for its plan, while an older one is shown.
     pub fn is_waiting(&self) -> bool {
         self.latest.as_ref().zip(self.shown.as_ref()).is_some_and(|(latest, shown)| {
             latest.stage == Stage::Compiled && latest.network.is_some() && shown.revision < latest.revision
@@ -96,7 +96,7 @@ impl Snapshots {
         self.given_up = Some(revision);
     }
 
-    /// Whether a better plan than the one that is shown is looked for.
+    /// Returns whether a better plan than the one that is shown is looked for.
     pub fn is_improving(&self, revision: u64) -> bool {
         let latest = self.latest.as_ref().filter(|latest| latest.revision == revision);
         latest.is_some_and(|latest| latest.stage == Stage::Improving) && self.given_up != Some(revision)
@@ -119,12 +119,12 @@ impl Snapshots {
         self.shown.as_ref()
     }
 
-    /// Whether what is shown belongs to an older text than `revision`.
+    /// Returns whether what is shown belongs to an older text than `revision`.
     pub fn is_stale(&self, revision: u64) -> bool {
         self.shown.as_ref().is_some_and(|shown| shown.revision != revision)
     }
 
-    /// Where the plan represents the text of `revision`.
+    /// Returns where the plan represents the text of `revision`.
     pub fn status(&self, revision: u64) -> Status {
         let unfinished = if self.given_up == Some(revision) { Status::Undecided } else { Status::Working };
         let Some(latest) = &self.latest else { return unfinished };
@@ -144,13 +144,13 @@ impl Snapshots {
 }
 
 impl Snapshots {
-    /// Whether nothing is wrong with the last text that was read but that it says nothing to plan yet.
+    /// Returns whether nothing is wrong with the last text that was read but that it says nothing to plan yet.
     pub fn lacks_a_scenario(&self) -> bool {
         self.latest.as_deref().is_some_and(lacks_a_scenario)
     }
 }
 
-/// Whether nothing is wrong with a text but that it says nothing to plan yet.
+/// Returns whether nothing is wrong with a text but that it says nothing to plan yet.
 fn lacks_a_scenario(snapshot: &Snapshot) -> bool {
     let mut errors =
         snapshot.problems.iter().filter(|problem| problem.severity == Severity::Error).peekable();

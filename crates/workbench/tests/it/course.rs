@@ -137,8 +137,8 @@ fn answer(app: &mut App, answer: &Answer, has_solution: bool) -> Vec<String> {
     wrong
 }
 
-/// What comes at a stop that has it predicted, read from the recorded search or from the run, and not from what the
-/// lesson computes.
+/// Returns what comes at a stop that has it predicted, read from the recorded search or from the run, and not from what
+/// the lesson computes.
 fn outcomes(app: &mut App, name: &str, stop: usize, forecast: &Forecast) -> Vec<String> {
     open(app, name, stop);
     let state = app.session.state();

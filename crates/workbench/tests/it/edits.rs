@@ -74,7 +74,7 @@ struct Desk {
     lost: usize,
 }
 
-/// What a core says that reads the whole text.
+/// Returns what a core says that reads the whole text.
 fn fresh(text: &str) -> Snapshot {
     content(&test_core::snapshot(text))
 }

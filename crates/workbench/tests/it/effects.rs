@@ -23,12 +23,12 @@ fn opened(source: &str) -> App {
     app
 }
 
-/// What panels and their layout are to do now.
+/// Returns what panels and their layout are to do now.
 fn left(app: &mut App) -> Vec<PanelEffect> {
     app.session.state_mut().window.panel_effects.take(Some)
 }
 
-/// What a command leaves for them.
+/// Returns what a command leaves for them.
 fn leaves(app: &mut App, command: Command) -> Vec<PanelEffect> {
     app.session.apply(vec![command]);
     left(app)

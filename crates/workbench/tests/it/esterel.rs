@@ -127,7 +127,7 @@ fn each_idiom_of_the_manual_runs_in_a_lesson_as_its_table_says() {
     assert_eq!(stops().len(), idioms.len(), "every stop has an idiom of its own");
 }
 
-/// What is marked after these steps, one after the other, from the start.
+/// Returns what is marked after these steps, one after the other, from the start.
 fn run(app: &mut App, idiom: &str, known: &[&[(&str, &str)]]) -> Vec<String> {
     open(app, &named(idiom));
     for now in known {

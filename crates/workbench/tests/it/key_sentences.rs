@@ -56,12 +56,12 @@ impl Told<'_> {
         self.plans.iter().filter(|plan| choices.iter().all(|&choice| makes(plan, choice)))
     }
 
-    /// Whether no plan makes all of these choices.
+    /// Returns whether no plan makes all of these choices.
     fn excludes(&self, choices: &[TreeChoice]) -> bool {
         self.plans_with(choices).next().is_none()
     }
 
-    /// Whether the record tells what a solver decides, and not how a network grows arc by arc.
+    /// Returns whether the record tells what a solver decides, and not how a network grows arc by arc.
     fn is_by_solver(&self) -> bool {
         matches!(self.trace.events.first().map(|entry| &entry.event), Some(Event::Begin(_)))
     }
@@ -76,7 +76,7 @@ impl Told<'_> {
         self.trace.tree[state as usize].choice
     }
 
-    /// What of a sentence is not so.
+    /// Returns what of a sentence is not so.
     fn lie(&self, step: usize, sentence: &str) -> Option<String> {
         let entry = &self.trace.events[step];
         let selected = self.selected(step);
@@ -217,8 +217,8 @@ impl Told<'_> {
     }
 }
 
-/// Whether a plan makes a choice. Of an order that follows from other things it says nothing, so it makes that unless it adds
-/// the opposite.
+/// Returns whether a plan makes a choice. Of an order that follows from other things it says nothing, so it makes that
+/// unless it adds the opposite.
 fn makes(plan: &Plan, choice: TreeChoice) -> bool {
     match choice {
         TreeChoice::Decision { decision, alternative } => {

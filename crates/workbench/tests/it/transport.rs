@@ -27,7 +27,7 @@ fn driving(track: Track) -> App {
 
 const ALL: [Track; 5] = [Track::Plan, Track::Execution, Track::Search, Track::Growth, Track::Program];
 
-/// What plays: time, the search, the growth, the program.
+/// Returns what plays: time, the search, the growth, the program.
 fn playing(app: &App) -> [bool; 4] {
     let state = app.session.state();
     [
@@ -38,7 +38,7 @@ fn playing(app: &App) -> [bool; 4] {
     ]
 }
 
-/// Where time, the search, the growth and the program are.
+/// Returns where time, the search, the growth and the program are.
 fn places(app: &App) -> [f64; 4] {
     let state = app.session.state();
     [

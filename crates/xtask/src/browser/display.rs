@@ -38,12 +38,12 @@ impl Display {
         Ok(Some(display))
     }
 
-    /// Whether there is one, or a program that makes one.
+    /// Returns whether there is one, or a program that makes one.
     pub(super) fn is_there() -> bool {
         env::var_os("DISPLAY").is_some() || find_program(&["Xvfb"]).is_some()
     }
 
-    /// What programs that draw on it are told.
+    /// Returns what programs that draw on it are told.
     pub(super) fn name(&self) -> &str {
         &self.name
     }

@@ -45,7 +45,7 @@ pub fn find_or_install_chromium() -> Result<PathBuf> {
     );
 }
 
-/// Whether this process runs as root.
+/// Returns whether this process runs as root.
 pub fn is_root() -> bool {
     // The owner of a process's folder under /proc is the user it runs as.
     #[cfg(unix)]

@@ -34,7 +34,7 @@ impl Modifiers {
     pub const CONTROL: Self = Self(2);
     pub const SHIFT: Self = Self(8);
 
-    /// Whether a key pressed with these still types a character.
+    /// Returns whether a key pressed with these still types a character.
     pub(super) fn types(self) -> bool {
         self.0 & (Self::ALT.0 | Self::CONTROL.0) == 0
     }

@@ -34,7 +34,7 @@ impl Picture {
         Ok(Self { width: frame.width, height: frame.height, pixels })
     }
 
-    /// How many different colors there are; a blank picture has one.
+    /// Returns how many different colors there are; a blank picture has one.
     pub fn colors(&self) -> usize {
         self.pixels.iter().collect::<BTreeSet<_>>().len()
     }

@@ -159,7 +159,7 @@ impl Tab {
         })
     }
 
-    /// What the page wrote to its console and the exceptions that no one caught, so far.
+    /// Returns what the page wrote to its console and the exceptions that no one caught, so far.
     pub fn messages(&self) -> Vec<String> {
         let events = self.connection.borrow_mut().take_events(&self.session);
         let mut log = self.log.borrow_mut();

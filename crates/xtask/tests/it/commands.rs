@@ -71,7 +71,7 @@ fn help_of_xtask() -> BTreeMap<String, String> {
     names.map(|name| (name.to_owned(), help(&[name, "--help"]))).collect()
 }
 
-/// What is wrong with a command, by the help texts of its program.
+/// Returns what is wrong with a command, by the help texts of its program.
 fn problem(arguments: &str, helps: &BTreeMap<String, String>) -> Option<String> {
     static OPTION: LazyLock<Regex> =
         LazyLock::new(|| Regex::new(r"(?:^|[\s\[(])(--?[a-zA-Z][a-z0-9-]*)").expect("a pattern"));

@@ -85,7 +85,7 @@ fn tokens(text: &str) -> Vec<String> {
     found
 }
 
-/// Where an item ends that begins at a token: behind its semicolon or its braces.
+/// Returns where an item ends that begins at a token: behind its semicolon or its braces.
 fn end_of_item(tokens: &[String], from: usize) -> usize {
     let mut depth = 0_usize;
     for (at, token) in tokens.iter().enumerate().skip(from) {
@@ -184,7 +184,7 @@ impl Source {
     }
 }
 
-/// Where a `use` ends: at its semicolon.
+/// Returns where a `use` ends: at its semicolon.
 fn end_of_use(tokens: &[String], from: usize) -> usize {
     tokens.iter().skip(from).position(|token| token == ";").map_or(tokens.len(), |at| from + at)
 }

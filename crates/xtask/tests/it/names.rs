@@ -24,7 +24,7 @@ fn documents() -> impl Iterator<Item = (PathBuf, String)> {
     })
 }
 
-/// What is between backticks in the prose of a Markdown text.
+/// Returns what is between backticks in the prose of a Markdown text.
 fn code_words(markdown: &str) -> Vec<&str> {
     let mut is_code = false;
     let mut found = Vec::new();

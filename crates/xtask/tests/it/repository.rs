@@ -172,7 +172,7 @@ fn pure_crates_are_built_without_anything_that_draws() {
     }
 }
 
-/// What a crate builds on, directly or not.
+/// Returns what a crate builds on, directly or not.
 pub(crate) fn everything_below<'a>(
     name: &'a str,
     layers: &BTreeMap<&'a str, &'a [&'a str]>,
@@ -251,7 +251,7 @@ fn a_library_that_is_not_built_for_tests_has_none() {
     assert!(found.is_empty(), "tests that never run: {found:?}");
 }
 
-/// Whether a module is compiled for tests only: the module above it says so.
+/// Returns whether a module is compiled for tests only: the module above it says so.
 pub(crate) fn is_test(source: &Path) -> bool {
     let (Some(folder), Some(name)) = (source.parent(), source.file_stem()) else { return false };
     let declaration = format!("#[cfg(test)]\nmod {};", name.display());

@@ -260,7 +260,7 @@ fn collect(tokens: TokenStream, callee: &str, found: &mut Vec<Text>) {
     }
 }
 
-/// What a literal says, if it is a string: without quotes and line breaks, each placeholder as `{}`.
+/// Returns what a literal says, if it is a string: without quotes and line breaks, each placeholder as `{}`.
 fn string(literal: &str) -> Option<String> {
     let literal = literal.trim_start_matches('r').trim_matches('#');
     let inner = literal.strip_prefix('"')?.strip_suffix('"')?;
@@ -367,7 +367,7 @@ fn no_text_has_a_banned_word() {
     assert!(idle.is_empty(), "these exceptions are not needed: {idle:?}");
 }
 
-/// What matches one of these patterns in a text, with what to write instead.
+/// Returns what matches one of these patterns in a text, with what to write instead.
 fn problems(file: &str, line: usize, words: &str, patterns: &[(Regex, &str)]) -> Vec<String> {
     let found = patterns.iter().filter(|(pattern, _)| pattern.is_match(words));
     found.map(|(pattern, instead)| format!("{file}:{line}: {words:?} ({pattern}: {instead})")).collect()

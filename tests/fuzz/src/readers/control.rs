@@ -89,7 +89,7 @@ pub(super) const RUN: Reader = Reader {
 /// Steps of a run.
 const MAX_STEPS: usize = 12;
 
-/// What comes from outside in a step.
+/// Returns what comes from outside in a step.
 fn outside(random: &mut Random, model: &Model) -> StepInput {
     let mut input = StepInput::default();
     let at = random.below(model.components.len());

@@ -4,7 +4,7 @@ use terrain::format::{FileFormat, ImportOptions, attach_label, image_of_label, r
 
 use super::{Outcome, Reader, nothing, read, refused};
 
-/// What holds of every map: as many samples as cells, and ground of it.
+/// Returns what holds of every map: as many samples as cells, and ground of it.
 fn exercise(bytes: &[u8], options: &ImportOptions) -> Outcome {
     let format = FileFormat::detect(bytes);
     match read_raster(bytes, options) {

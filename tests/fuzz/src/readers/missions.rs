@@ -165,7 +165,7 @@ pub(super) fn update_of(text: &str) -> Update {
     Update { seed: 1, ..Update::new(1, text) }
 }
 
-/// What was answered last of a text.
+/// Returns what was answered last of a text.
 pub(super) fn last_snapshot(host: &Bounded) -> Option<Arc<Snapshot>> {
     host.answered.iter().rev().find_map(|answer| match answer {
         Response::Snapshot(snapshot) => Some(Arc::clone(snapshot)),
@@ -200,7 +200,7 @@ fn planned(input: &[u8]) -> Outcome {
     read(&what)
 }
 
-/// Whether the checker could not check, which is said.
+/// Returns whether the checker could not check, which is said.
 fn is_beyond(violation: &Violation) -> bool {
     violation.rule == Rule::Form
 }

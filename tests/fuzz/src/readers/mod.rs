@@ -96,7 +96,7 @@ fn files(folder: &Path, ending: &str) -> Vec<Vec<u8>> {
     paths.iter().filter_map(|path| fs::read(path).ok()).collect()
 }
 
-/// What the files hold that a pattern names: one file, or `folder/*ending`, below the root of the repository.
+/// Returns what the files hold that a pattern names: one file, or `folder/*ending`, below the root of the repository.
 pub fn matching(pattern: &str) -> Vec<Vec<u8>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     match pattern.split_once('*') {
@@ -106,7 +106,7 @@ pub fn matching(pattern: &str) -> Vec<Vec<u8>> {
 }
 
 impl Reader {
-    /// What once broke it.
+    /// Returns what once broke it.
     pub fn broken(&self) -> Vec<Vec<u8>> {
         files(&own_folder("broken").join(self.name), "")
     }
@@ -140,7 +140,7 @@ fn refused(why: &str) -> Outcome {
     Outcome { signature: signature(&why.chars().take(60).collect::<String>()), is_read: false }
 }
 
-/// What reading led to.
+/// Returns what reading led to.
 fn read(what: &str) -> Outcome {
     Outcome { signature: signature(what) | 1, is_read: true }
 }
@@ -157,7 +157,7 @@ fn signature(words: &str) -> u64 {
     hasher.finish() & !1
 }
 
-/// How large something is, roughly.
+/// Returns how large something is, roughly.
 fn magnitude(count: usize) -> char {
     char::from(b'a' + (usize::BITS - count.leading_zeros()) as u8 % 26)
 }

@@ -195,7 +195,7 @@ fn the_theme_follows_the_system_until_one_is_chosen() -> Result<()> {
     page.wait_for("state.theme === 'light'")
 }
 
-/// What axe-core finds wrong in the page as it stands: rule, how grave, and the elements.
+/// Returns what axe-core finds wrong in the page as it stands: rule, how grave, and the elements.
 fn violations(page: &Opened, script: &str) -> Result<Value> {
     page.tab.evaluate(&format!("{script}; 0"))?;
     page.tab.evaluate(

@@ -315,7 +315,8 @@ impl<'program> Found<'program> {
         found
     }
 
-    /// Whether a location is to be left some time: it waits for something, and nothing around it starts it again and again.
+    /// Returns whether a location is to be left some time: it waits for something, and nothing around it starts it
+    /// again and again.
     fn waits_once(&self, id: LocationId) -> bool {
         let Some(location) = self.automaton.location(id) else { return false };
         let waits = matches!(location.kind, LocationKind::Assert | LocationKind::When | LocationKind::Lock);
@@ -353,7 +354,7 @@ impl<'program> Found<'program> {
         warnings
     }
 
-    /// Whether a WHENEVER starts its body in some run.
+    /// Returns whether a WHENEVER starts its body in some run.
     fn starts(&self, id: LocationId) -> bool {
         let transitions = self.automaton.location(id).map_or(0..0, |location| location.transitions.clone());
         transitions.into_iter().any(|at| {

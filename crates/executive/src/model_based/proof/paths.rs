@@ -36,7 +36,7 @@ impl Counterexample {
         shown.collect()
     }
 
-    /// How it ends, such as `after 6 steps nothing changes`.
+    /// Returns how it ends, such as `after 6 steps nothing changes`.
     pub fn ending(&self) -> String {
         let steps = self.moves.len();
         let count = |number: usize| format!("{number} step{}", if number == 1 { "" } else { "s" });

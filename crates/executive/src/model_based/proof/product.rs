@@ -219,7 +219,7 @@ impl Explorer {
         }
     }
 
-    /// Where runs may start: in each state that is possible at first, and with each of the first choices.
+    /// Returns where runs may start: in each state that is possible at first, and with each of the first choices.
     pub(super) fn starts(&mut self, knowledge: Knowledge, most: usize) -> Vec<Way> {
         let closed = ClosedLoop::new(&self.system, &mut self.estimator, None);
         let likeliest = closed.true_state().clone();
@@ -304,7 +304,7 @@ impl Explorer {
         Ok((ways, commanded.contradiction))
     }
 
-    /// What may be observed once components have entered their modes. An error of a sensor counts as a fault.
+    /// Returns what may be observed once components have entered their modes. An error of a sensor counts as a fault.
     fn seen(&mut self, entered: &Entered, most_faults: u32) -> Vec<Seen> {
         let model = &self.system.model;
         let state = entered.closed.true_state();
@@ -420,7 +420,8 @@ impl Explorer {
         judged.collect()
     }
 
-    /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
+    /// Returns what tells the place apart to which a way leads. What the program has nothing to do with does not
+    /// matter.
     pub(super) fn key(&self, way: &Way, faults_left: u32) -> Key {
         // With perfect knowledge, the modes say what is believed.
         let is_estimated = way.closed.knowledge() == Knowledge::Estimated;
@@ -439,7 +440,7 @@ impl Explorer {
         }
     }
 
-    /// What tells a node apart from those that differ from it in the probabilities of what is believed only.
+    /// Returns what tells a node apart from those that differ from it in the probabilities of what is believed only.
     fn kind(&self, node: &Node) -> Key {
         let (state, likeliest) = (node.closed.true_state(), node.closed.belief().most_likely());
         let modes = self.components.iter().flat_map(|id| [state.mode(*id), likeliest.mode(*id)]);
@@ -595,7 +596,7 @@ impl Exploration {
 }
 
 impl Way {
-    /// Why the run is over where it leads, if it is.
+    /// Returns why the run is over where it leads, if it is.
     pub(super) fn end(&self) -> Option<End> {
         match self.closed.outcome() {
             StepOutcome::Refuted { .. } => Some(End::Refuted),
@@ -605,7 +606,7 @@ impl Way {
         }
     }
 
-    /// Where it leads.
+    /// Returns where it leads.
     pub(super) fn place(self) -> (Standing, ClosedLoop) {
         (self.standing, self.closed)
     }

@@ -43,7 +43,7 @@ impl<'file> Writer<'file> {
         Ok(())
     }
 
-    /// Whether a transition asks for an attribute, or a module connects it with its parts.
+    /// Returns whether a transition asks for an attribute, or a module connects it with its parts.
     fn asks_or_leads(&self, class: &'file Class, attribute: &Attribute) -> bool {
         let key = self.names().key(class, &attribute.name);
         let is_module = self.names().modes(class).is_none();

@@ -22,8 +22,8 @@ pub(super) struct Place {
     is_inside: bool,
 }
 
-/// Where a name of this width is written: inside its bar if it fits there, otherwise between the bar and the `next` one;
-/// cut if it fits in neither. `seen` is the part of the row that is in view.
+/// Returns where a name of this width is written: inside its bar if it fits there, otherwise between the bar and the
+/// `next` one; cut if it fits in neither. `seen` is the part of the row that is in view.
 fn place(width: f64, bar: [f64; 2], next: f64, seen: [f64; 2]) -> Option<Place> {
     let inside = [bar[0].max(seen[0]) + MARGINS.0, bar[1].min(seen[1]) - MARGINS.0];
     let beside = [bar[1].max(seen[0]) + MARGINS.1, next.min(seen[1]) - MARGINS.1];
@@ -40,7 +40,7 @@ fn place(width: f64, bar: [f64; 2], next: f64, seen: [f64; 2]) -> Option<Place> 
 }
 
 impl Builder<'_> {
-    /// Where these words are written, which name what covers `rect`; something else begins at `next`.
+    /// Returns where these words are written, which name what covers `rect`; something else begins at `next`.
     pub(super) fn place_of_name(&self, words: &str, rect: Rect, next: f64) -> Option<Place> {
         let width = (text_width_at(words, SIZES[1], self.measure) * SPARE).ceil();
         let seen = self.track.visible;

@@ -109,7 +109,7 @@ pub struct LinkCurve<'a> {
 }
 
 impl Track {
-    /// Where a time is; infinity is beyond the right edge.
+    /// Returns where a time is; infinity is beyond the right edge.
     pub fn x(&self, time: f64) -> f64 {
         if !time.is_finite() {
             return self.right + 8.0;
@@ -139,7 +139,7 @@ impl Track {
         self.slot(row, from, to)
     }
 
-    /// Where the sign is that opens and closes a row.
+    /// Returns where the sign is that opens and closes a row.
     pub fn sign(&self, shown: &Row, row: Rect) -> Rect {
         let left = row.min.x + SIGN.1 + f64::from(shown.depth) * INDENT;
         Rect::new(left, row.min.y, left + SIGN.0, row.min.y + BAR_EDGES.iter().sum::<f64>())

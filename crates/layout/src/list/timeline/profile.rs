@@ -23,7 +23,7 @@ const MOMENT_WIDTH: f64 = 5.0;
 const NUMBER_GAP: f64 = 14.0;
 
 impl Track {
-    /// Where the plot of a profile of `rows` rows is, one of whose rows has this number.
+    /// Returns where the plot of a profile of `rows` rows is, one of whose rows has this number.
     pub fn plot(&self, row: usize, part: ProfilePart, rows: usize) -> Rect {
         let first = row.saturating_sub(part.part);
         let (top, bottom) = (self.row(first).min.y, self.row(first + rows - 1).max.y);

@@ -142,7 +142,7 @@ pub(crate) fn segments(drawing: &NetworkDrawing) -> Vec<(usize, Point, Point)> {
     segments
 }
 
-/// How often arcs of a drawing cross, not counting where they share a line or an end.
+/// Returns how often arcs of a drawing cross, not counting where they share a line or an end.
 pub(crate) fn crossings(drawing: &NetworkDrawing) -> usize {
     let mut segments = segments(drawing);
     segments.sort_by(|left, right| left.1.x.min(left.2.x).total_cmp(&right.1.x.min(right.2.x)));
@@ -166,7 +166,7 @@ fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// Whether a segment passes through the inside of a rectangle.
+/// Returns whether a segment passes through the inside of a rectangle.
 pub(crate) fn segment_meets_rect(from: Point, to: Point, rect: Rect) -> bool {
     let steps = (from.distance(to) / 1.5).ceil().max(1.0) as u32;
     (0..=steps).any(|step| {

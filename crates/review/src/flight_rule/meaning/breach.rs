@@ -33,7 +33,7 @@ pub(super) fn earliest(breaches: impl IntoIterator<Item = Breach>) -> Option<Bre
     breaches.into_iter().min_by_key(|it| (it.stretch.from, it.stretch.to))
 }
 
-/// Where the levels of a case are as it wants them, and when; `None` if that cannot be told.
+/// Returns where the levels of a case are as it wants them, and when; `None` if that cannot be told.
 pub(super) fn at_levels(
     times: &mut Times,
     resources: &[Resource],

@@ -21,7 +21,7 @@ pub(in crate::flight_rule) enum Asked {
 }
 
 impl Asked {
-    /// What is asked of a condition when this is asked of its negation.
+    /// Returns what is asked of a condition when this is asked of its negation.
     pub(in crate::flight_rule) const fn of_negation(self) -> Self {
         match self {
             Self::Known => Self::Denied,
@@ -31,7 +31,7 @@ impl Asked {
         }
     }
 
-    /// What is asked of the contrary where more than one touching side must not do.
+    /// Returns what is asked of the contrary where more than one touching side must not do.
     pub(in crate::flight_rule) const fn of_contrary(self) -> Self {
         match self {
             Self::Known => Self::NotDenied,
@@ -54,7 +54,7 @@ pub(in crate::flight_rule) enum Reading {
 }
 
 impl Reading {
-    /// How the inside of a `not` is read: a condition and its negation never are both known.
+    /// Returns how the inside of a `not` is read: a condition and its negation never are both known.
     pub(in crate::flight_rule) const fn of_negation(self) -> Self {
         match self {
             Self::Between => Self::Between,
@@ -192,7 +192,8 @@ impl Meaning<'_> {
     }
 }
 
-/// Whether a set of values tells that a variable has one of `values`, or, unless `is_among`, that it has another.
+/// Returns whether a set of values tells that a variable has one of `values`, or, unless `is_among`, that it has
+/// another.
 pub(in crate::flight_rule) fn tells(
     variable: &Variable,
     set: &ValueSet,

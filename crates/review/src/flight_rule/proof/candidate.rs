@@ -92,7 +92,8 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether the checker accepts a plan and its schedule, and the rule is not known to hold at an instant of it.
+    /// Returns whether the checker accepts a plan and its schedule, and the rule is not known to hold at an instant of
+    /// it.
     fn is_shown_by(self, network: &Network, plan: &Plan, times: &[Option<Time>]) -> bool {
         let has_path = network
             .arcs
@@ -266,7 +267,7 @@ impl Entailed {
         Some(Self { network, rows: BTreeMap::new() })
     }
 
-    /// Whether one event never comes later than another; `None` if times do not fit.
+    /// Returns whether one event never comes later than another; `None` if times do not fit.
     fn holds(&mut self, precedence: &Precedence) -> Option<bool> {
         let (later, earlier) =
             (self.network.point(precedence.later)?, self.network.point(precedence.earlier)?);

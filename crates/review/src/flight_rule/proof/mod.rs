@@ -115,12 +115,12 @@ impl Verdict {
         }
     }
 
-    /// Whether every plan keeps the rule.
+    /// Returns whether every plan keeps the rule.
     pub const fn is_kept(&self) -> bool {
         matches!(self, Self::Holds | Self::NeverApplies)
     }
 
-    /// Whether nothing is known of some plans.
+    /// Returns whether nothing is known of some plans.
     pub const fn is_open(&self) -> bool {
         matches!(self, Self::Open(_))
     }
@@ -133,7 +133,7 @@ impl Verdict {
         }
     }
 
-    /// What was found, in one sentence without an end.
+    /// Returns what was found, in one sentence without an end.
     pub fn sentence(&self) -> String {
         let of = |found: &Counterexample| if found.is_own { "this plan" } else { "another plan" };
         match self {

@@ -81,14 +81,14 @@ impl Requirement {
         if any.len() == 1 { any.remove(0) } else { Self::Any(any) }
     }
 
-    /// Whether nothing meets it.
+    /// Returns whether nothing meets it.
     pub(super) const fn is_impossible(&self) -> bool {
         matches!(self, Self::Any(parts) if parts.is_empty())
     }
 }
 
 impl Question<'_> {
-    /// What an instant has to be like for each place at which a rule looks; `None` if times are too large.
+    /// Returns what an instant has to be like for each place at which a rule looks; `None` if times are too large.
     pub(super) fn requirements(self, rule: &Rule, sought: Sought) -> Option<Vec<Requirement>> {
         let of = match &rule.moment {
             Moment::Start(of) | Moment::End(of) => of.as_ref(),
@@ -277,7 +277,7 @@ impl Question<'_> {
         Requirement::all(meant.iter().map(unknown))
     }
 
-    /// Whether a change of a state ends what another one has made, if it comes after it.
+    /// Returns whether a change of a state ends what another one has made, if it comes after it.
     fn ends(self, own: LabelId, other: LabelId) -> bool {
         own != other
             && self.network.labels[other.index()].extent != Extent::Initial

@@ -111,7 +111,7 @@ fn a_mission_without_a_plan_and_a_search_that_is_stopped_prove_nothing() {
     assert_eq!(prove(mission, &rule, effort).verdict.name(), "open");
 }
 
-/// How the plans of a mission stand to a rule, by listing them: the worst of all.
+/// Returns how the plans of a mission stand to a rule, by listing them: the worst of all.
 fn worst(snapshot: &snapshot::Snapshot, network: &Network, rule: &str) -> Option<&'static str> {
     const MAX_PLANS: usize = 60;
     let options = Options { all: true, max_plans: MAX_PLANS, ..OPTIONS };

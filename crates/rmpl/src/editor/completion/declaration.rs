@@ -67,7 +67,7 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
     })
 }
 
-/// Whether the model of a vehicle has just been written.
+/// Returns whether the model of a vehicle has just been written.
 fn is_behind_colon(context: &[SyntaxToken<'_>]) -> bool {
     context.len().checked_sub(2).and_then(|at| context.get(at)).is_some_and(|it| it.kind == SyntaxKind::Colon)
 }
@@ -216,7 +216,7 @@ fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     }
 }
 
-/// Whether the last condition of a clause compares a level, and its bound has started.
+/// Returns whether the last condition of a clause compares a level, and its bound has started.
 fn compares_level(clause: &[SyntaxToken<'_>]) -> bool {
     let condition =
         clause.iter().rev().take_while(|token| token.kind != SyntaxKind::Comma && token.text != "and");
@@ -235,7 +235,7 @@ fn in_moves(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     }
 }
 
-/// Where an amount stands or ends; `before` begins with what is before it.
+/// Returns where an amount stands or ends; `before` begins with what is before it.
 fn in_amount(before: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     let units: Vec<&'static str> = Per::ALL.iter().map(|(word, _)| *word).collect();
     if last.kind == SyntaxKind::Name && last.text == "per" && before.len() > 1 {

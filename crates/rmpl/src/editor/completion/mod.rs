@@ -71,7 +71,7 @@ pub enum CompletionKind {
     Option,
 }
 
-/// What can be written at `offset`.
+/// Returns what can be written at `offset`.
 pub fn complete(parse: &Parse, offset: u32) -> Completion {
     let around = parse.declaration_at(offset.saturating_sub(1));
     let written =
@@ -115,7 +115,7 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     Completion { replaces, items, wants: None }
 }
 
-/// What a string around the cursor may be, if something is known of it; what is between the quotes is
+/// Returns what a string around the cursor may be, if something is known of it; what is between the quotes is
 /// replaced.
 fn in_quotes(before: &[SyntaxToken<'_>], offset: u32) -> Option<Completion> {
     let (last, context) = before.split_last()?;
@@ -130,7 +130,7 @@ fn in_quotes(before: &[SyntaxToken<'_>], offset: u32) -> Option<Completion> {
     Some(Completion { replaces: Span::new(last.span.start + 1, end), items: Vec::new(), wants: Some(wants) })
 }
 
-/// What is called by the call that the tokens end with, if they do.
+/// Returns what is called by the call that the tokens end with, if they do.
 fn callee<'parse>(context: &[SyntaxToken<'parse>]) -> Option<&'parse str> {
     let (last, before) = context.split_last()?;
     if last.kind == SyntaxKind::Name {
@@ -151,12 +151,12 @@ fn callee<'parse>(context: &[SyntaxToken<'parse>]) -> Option<&'parse str> {
         .map(|it| it.text)
 }
 
-/// Whether an activity has a definition, and is not a primitive.
+/// Returns whether an activity has a definition, and is not a primitive.
 fn is_definition(parse: &Parse, name: &str) -> bool {
     outline(parse).iter().any(|item| item.kind == OutlineKind::Activity && item.name == name)
 }
 
-/// Whether the cursor is in a comment, a string or a number, where nothing is completed.
+/// Returns whether the cursor is in a comment, a string or a number, where nothing is completed.
 fn is_opaque(token: SyntaxToken<'_>, offset: u32) -> bool {
     match token.kind {
         SyntaxKind::LineComment | SyntaxKind::String | SyntaxKind::Number => token.span.end >= offset,

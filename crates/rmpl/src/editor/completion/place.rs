@@ -51,7 +51,7 @@ pub(super) enum Place {
     Nothing,
 }
 
-/// What the tokens before the cursor say about the place. Reads backwards to what decides; needs no sound tree.
+/// Returns what the tokens before the cursor say about the place. Reads backwards to what decides; needs no sound tree.
 pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     use SyntaxKind as Kind;
     let Some(last) = context.last() else { return Place::File };
@@ -125,7 +125,7 @@ pub(super) fn in_set(context: &[SyntaxToken<'_>], at: usize) -> Option<Place> {
     is_set.then(|| value_of(context, at - 1))
 }
 
-/// Whether `(` at this index follows `in visible`.
+/// Returns whether `(` at this index follows `in visible`.
 pub(super) fn is_sight(context: &[SyntaxToken<'_>], at: usize) -> bool {
     let is_word = |back: usize, word: &str| {
         at.checked_sub(back).and_then(|at| context.get(at)).is_some_and(|token| token.text == word)
@@ -140,7 +140,7 @@ pub(super) fn behind_place_in(context: &[SyntaxToken<'_>]) -> Option<Place> {
     (is_in && from_end(3)?.kind == SyntaxKind::Dot).then_some(Place::SetOfLocations)
 }
 
-/// Whether the tokens end with `any x in` or `each x in`.
+/// Returns whether the tokens end with `any x in` or `each x in`.
 fn is_behind_members(context: &[SyntaxToken<'_>]) -> bool {
     let from_end = |back: usize| context.len().checked_sub(back).and_then(|at| context.get(at));
     let is_in = from_end(1).is_some_and(|last| last.text == "in" && last.kind == SyntaxKind::Name);
@@ -229,7 +229,7 @@ fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
     if may_be_natures { Place::Words(with_bounds(&["as"])) } else { Place::Words(vec!["as"]) }
 }
 
-/// Whether `token` is in parentheses or square brackets.
+/// Returns whether `token` is in parentheses or square brackets.
 fn in_round(context: &[SyntaxToken<'_>], token: SyntaxToken<'_>) -> bool {
     let until: Vec<SyntaxToken<'_>> =
         context.iter().take_while(|other| other.span.start < token.span.start).copied().collect();

@@ -148,7 +148,7 @@ pub struct Game<'a> {
 const NOT_YET: i8 = -1;
 
 impl<'a> Game<'a> {
-    /// Whether the executive wins.
+    /// Returns whether the executive wins.
     pub fn is_won(network: &'a Network, horizon: i8) -> bool {
         let mut game = Self { network, horizon, memo: HashMap::new() };
         let mut times = vec![NOT_YET; network.num_points()];
@@ -156,7 +156,7 @@ impl<'a> Game<'a> {
         game.may_be(&times, 0) && game.nature(times, 0, true)
     }
 
-    /// Whether nothing is violated yet at `now`.
+    /// Returns whether nothing is violated yet at `now`.
     fn may_be(&self, times: &[i8], now: i8) -> bool {
         self.network.edges().iter().all(|edge| {
             let (from, to) = (times[edge.from.index()], times[edge.to.index()]);

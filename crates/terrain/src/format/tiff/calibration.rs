@@ -44,7 +44,7 @@ impl Calibration {
         Ok(Self { scale, offset, unit_m, no_data })
     }
 
-    /// Whether heights are the stored values.
+    /// Returns whether heights are the stored values.
     pub fn is_identity(&self) -> bool {
         self.scale == 1.0 && self.offset == 0.0 && self.unit_m == 1.0
     }

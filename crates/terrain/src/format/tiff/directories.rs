@@ -11,7 +11,7 @@ const MAX_DIRECTORY_COUNT: usize = 128;
 const REDUCED: u32 = 1;
 const MASK: u32 = 4;
 
-/// Which cells are valid by the internal mask of the first image, row by row; `None` if there is no mask.
+/// Returns which cells are valid by the internal mask of the first image, row by row; `None` if there is no mask.
 pub(super) fn read_mask(bytes: &[u8], decoder: &mut Decoder<'_>) -> Result<Option<Vec<bool>>, FormatError> {
     let Some(index) = mask_index(decoder)? else { return Ok(None) };
     let (width, height) = decoder.dimensions().map_err(|error| problem(&error))?;

@@ -88,7 +88,7 @@ impl Georeference {
     }
 }
 
-/// How far east a column and how far north a row leads; `None` if the file does not say.
+/// Returns how far east a column and how far north a row leads; `None` if the file does not say.
 fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
     let scale = doubles(decoder, Tag::ModelPixelScaleTag)?;
     if let &[x, y, ..] = scale.as_slice() {

@@ -210,7 +210,7 @@ impl<'search> Search<'search> {
         least.unwrap_or_default()
     }
 
-    /// Whether an event is placed before the one that is placed next.
+    /// Returns whether an event is placed before the one that is placed next.
     fn is_over(&self, placed: &Placed, node: NodeId) -> bool {
         self.at[node.index()].is_some_and(|(instant, place)| {
             instant < placed.instant || (instant == placed.instant && placed.has_come[place])

@@ -37,7 +37,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What an event does to a state and requires of it; which producers hold after it.
+    /// Returns what an event does to a state and requires of it; which producers hold after it.
     fn change(&self, index: usize, node: NodeId, placed: &Placed) -> Result<Vec<LabelId>, Refusal> {
         let (network, state) = (self.network(), &self.states[index]);
         let has_started = |start: NodeId| self.is_over(placed, start);

@@ -50,13 +50,13 @@ fn middle(shape: &ObstacleShape) -> Point2<f64> {
     }
 }
 
-/// Whether two lines have a point in common.
+/// Returns whether two lines have a point in common.
 fn crosses([a, b]: [Point2<f64>; 2], [c, d]: [Point2<f64>; 2]) -> bool {
     let turn = |from: Point2<f64>, to: Point2<f64>, at: Point2<f64>| (to - from).perp(&(at - from));
     turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0
 }
 
-/// What a search has done: the first one, or that of the planner of this name.
+/// Returns what a search has done: the first one, or that of the planner of this name.
 fn growing<'a>(it: &'a Description<'_>, planner: &str) -> Option<&'a PathSearch> {
     let searches = &it.terrain().growth.as_ref()?.searches;
     if planner.is_empty() {

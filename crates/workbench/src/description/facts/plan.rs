@@ -155,7 +155,7 @@ fn levels(it: &Description<'_>, resource: &str) -> Option<Levels> {
     plan.levels.get(at).copied()
 }
 
-/// How much of the first resource that it changes so an occurrence takes or gives.
+/// Returns how much of the first resource that it changes so an occurrence takes or gives.
 fn amount(it: &Description<'_>, name: &str, change: Change) -> Option<Value> {
     let network = it.network()?;
     let is_meant = |it: &&tpn::Use| {

@@ -75,7 +75,7 @@ pub fn callables(program: &Program) -> Vec<Callable> {
     found.into_iter().map(|(_, callable)| callable).collect()
 }
 
-/// What the parameters of a primitive represent, as far as the declaration tells.
+/// Returns what the parameters of a primitive represent, as far as the declaration tells.
 pub(super) fn kinds(primitive: &PrimitiveDecl) -> Vec<(String, Kind)> {
     let moves = primitive.moves.as_deref();
     let kind_of = |(index, formal): (usize, &rmpl::program::Name)| {

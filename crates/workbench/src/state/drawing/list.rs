@@ -135,7 +135,7 @@ fn delete_outer(parse: &Parse, site: &Site<'_>) -> Vec<Edit> {
     site.outer(parse).map_or_else(|| vec![removal(site.span())], |outer| delete(parse, &outer))
 }
 
-/// Whether a block is the body of a scenario or an activity, which may be empty.
+/// Returns whether a block is the body of a scenario or an activity, which may be empty.
 fn is_body(parse: &Parse, block: &SyntaxNode<'_>) -> bool {
     parse.declaration_at(block.span().start).is_some_and(|root| {
         let declared = root.children().filter(|it| it.kind().is_declaration());

@@ -56,7 +56,7 @@ fn start(program: &Program, vehicle: &str) -> Option<String> {
     Some(declared.start.text.to_string())
 }
 
-/// Whether a primitive can move a vehicle, and that vehicle alone.
+/// Returns whether a primitive can move a vehicle, and that vehicle alone.
 fn moves(primitive: &PrimitiveDecl, vehicle: &str) -> bool {
     let Some(moves) = &primitive.moves else { return false };
     let [leader] = moves.vehicles.as_slice() else { return false };
@@ -65,7 +65,7 @@ fn moves(primitive: &PrimitiveDecl, vehicle: &str) -> bool {
     has_place && (is_formal || leader.text == vehicle)
 }
 
-/// Whether a primitive is what a vehicle does at a location that it is given.
+/// Returns whether a primitive is what a vehicle does at a location that it is given.
 fn is_visit(program: &Program, primitive: &PrimitiveDecl, vehicle: &str) -> bool {
     let kinds = kinds(primitive);
     let places = kinds.iter().filter(|(_, kind)| *kind == Kind::Location).count();

@@ -86,7 +86,7 @@ pub enum ExecutionCommand {
 }
 
 impl ExecutionState {
-    /// What goes otherwise than planned.
+    /// Returns what goes otherwise than planned.
     pub fn disturbances(&self) -> &[Disturbance] {
         &self.script.disturbances
     }
@@ -96,12 +96,12 @@ impl ExecutionState {
         self.run.as_ref()
     }
 
-    /// Why there is no run.
+    /// Returns why there is no run.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref()
     }
 
-    /// What has happened at the time shown.
+    /// Returns what has happened at the time shown.
     pub fn moment(&self) -> Option<&Moment> {
         self.view.as_ref().map(|view| &view.moment)
     }
@@ -116,18 +116,19 @@ impl ExecutionState {
         })
     }
 
-    /// Whether the environment chooses so as to break the plan.
+    /// Returns whether the environment chooses so as to break the plan.
     pub const fn is_opposed(&self) -> bool {
         self.script.adversary
     }
 
-    /// Whether the run is a given one, such as a counterexample: its schedule, or what nature chooses in it, is given.
+    /// Returns whether the run is a given one, such as a counterexample: its schedule, or what nature chooses in it, is
+    /// given.
     pub fn is_replay(&self) -> bool {
         let Script { run_seed, nature, schedule, .. } = &self.script;
         run_seed.is_some() || !nature.is_empty() || !schedule.is_empty()
     }
 
-    /// Whether a newer run than the one shown is being worked out.
+    /// Returns whether a newer run than the one shown is being worked out.
     pub fn is_working(&self) -> bool {
         let is_answered = |run: &Arc<Execution>| {
             self.asked
@@ -156,14 +157,14 @@ impl ExecutionState {
         self.view.as_ref().map(|view| &view.snapshot)
     }
 
-    /// Whether the core was asked to execute the mission as it is planned, with the present disturbances.
+    /// Returns whether the core was asked to execute the mission as it is planned, with the present disturbances.
     pub(crate) fn is_asked(&self, update: &Update) -> bool {
         self.asked
             .as_ref()
             .is_some_and(|(revision, script)| (*revision, script) == (update.revision, &self.script))
     }
 
-    /// What the core is to execute of the mission as it is planned.
+    /// Returns what the core is to execute of the mission as it is planned.
     pub(crate) fn request(&mut self, update: Update) -> Request {
         self.asked = Some((update.revision, self.script.clone()));
         self.trouble = None;
@@ -351,7 +352,7 @@ pub fn exact_time(time: f64) -> Time {
     Time::from_f64_up(time - 1e-9, 1000).unwrap_or_default()
 }
 
-/// Whether `at` is not after the time shown.
+/// Returns whether `at` is not after the time shown.
 pub fn has_come(at: Time, time: f64) -> bool {
     playback::number(at) <= time + 1e-9
 }

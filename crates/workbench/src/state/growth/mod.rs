@@ -138,7 +138,7 @@ pub const fn planner_title(planner: PlannerKind) -> &'static str {
 }
 
 impl Growth {
-    /// What the last sample of the growth that is looked at did.
+    /// Returns what the last sample of the growth that is looked at did.
     pub fn last_sample(&self) -> Option<&GrowthStep> {
         self.shown()?.last()
     }
@@ -219,12 +219,12 @@ impl Growth {
         }
     }
 
-    /// Whether the core is to be asked for searches.
+    /// Returns whether the core is to be asked for searches.
     pub(crate) const fn wants_answer(&self) -> bool {
         self.wants_answer
     }
 
-    /// What to ask the core, once whenever that has changed; `update` is the mission that is shown.
+    /// Returns what to ask the core, once whenever that has changed; `update` is the mission that is shown.
     pub fn take_request(&mut self, update: Update) -> Option<PathGrowth> {
         self.wants_answer = false;
         let shown = self.shown.as_ref()?;
@@ -315,34 +315,34 @@ impl Shown {
         self.searches.iter().map(Search::known).max().unwrap_or(0)
     }
 
-    /// Whether all samples of all searches are known.
+    /// Returns whether all samples of all searches are known.
     pub fn is_complete(&self) -> bool {
         self.searches.iter().all(Search::is_complete)
     }
 
-    /// Why there is no search: said where there is none at all.
+    /// Returns why there is no search: said where there is none at all.
     pub fn refusal(&self) -> Option<&str> {
         let has_one = self.searches.iter().any(|search| search.refusal().is_none());
         self.searches.iter().find_map(Search::refusal).filter(|_| !has_one)
     }
 
-    /// Whether several searches are looked at.
+    /// Returns whether several searches are looked at.
     pub const fn is_race(&self) -> bool {
         self.searches.len() > 1
     }
 
-    /// What the search has done by now; of a race, its first search.
+    /// Returns what the search has done by now; of a race, its first search.
     pub fn counts(&self) -> Counts {
         self.counts_of(0)
     }
 
-    /// What one of the searches has done by now.
+    /// Returns what one of the searches has done by now.
     pub fn counts_of(&self, search: usize) -> Counts {
         let none = Counts { samples: 0, vertices: 0, checks: 0, length_m: None };
         self.searches.get(search).map_or(none, |search| search.counts(self.samples()))
     }
 
-    /// What the last sample did, in the first search.
+    /// Returns what the last sample did, in the first search.
     pub fn last(&self) -> Option<&GrowthStep> {
         self.searches.first()?.last(self.samples())
     }

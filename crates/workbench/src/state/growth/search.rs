@@ -84,7 +84,7 @@ impl Search {
         Self { planner, source: Source::Refused(reason) }
     }
 
-    /// What to ask the core; `None` if it is not the core that searches.
+    /// Returns what to ask the core; `None` if it is not the core that searches.
     pub(super) fn wanted(&self) -> Option<WantedPlanner> {
         let Source::Running(running) = &self.source else { return None };
         Some(WantedPlanner {
@@ -120,7 +120,7 @@ impl Search {
         }
     }
 
-    /// How many trees grow.
+    /// Returns how many trees grow.
     pub(super) fn roots_count(&self) -> usize {
         self.trace().map_or(0, |trace| trace.roots_m.len())
     }
@@ -130,7 +130,7 @@ impl Search {
         self.trace().map_or(0, |trace| trace.steps.len() as u32)
     }
 
-    /// Whether all samples of the search are known.
+    /// Returns whether all samples of the search are known.
     pub fn is_complete(&self) -> bool {
         match &self.source {
             Source::Running(running) => running.is_complete,
@@ -138,7 +138,7 @@ impl Search {
         }
     }
 
-    /// Why there is no search.
+    /// Returns why there is no search.
     pub fn refusal(&self) -> Option<&str> {
         match &self.source {
             Source::Refused(reason) => Some(reason),
@@ -154,7 +154,7 @@ impl Search {
         }
     }
 
-    /// What it has done by this many samples.
+    /// Returns what it has done by this many samples.
     pub fn counts(&self, samples: u32) -> Counts {
         let Some(trace) = self.trace() else {
             return Counts { samples: 0, vertices: 0, checks: 0, length_m: None };
@@ -169,7 +169,7 @@ impl Search {
         }
     }
 
-    /// What the last of so many samples did.
+    /// Returns what the last of so many samples did.
     pub fn last(&self, samples: u32) -> Option<&GrowthStep> {
         let last = samples.min(self.known()).checked_sub(1)?;
         self.trace()?.steps.get(last as usize)

@@ -5,7 +5,7 @@ use nalgebra::Point2;
 use super::{Counts, Shown};
 
 impl Shown {
-    /// How far the search is: of a race, how far each is.
+    /// Returns how far the search is: of a race, how far each is.
     pub fn words(&self) -> String {
         if let Some(reason) = self.refusal() {
             return reason.to_owned();
@@ -24,8 +24,8 @@ impl Shown {
         text
     }
 
-    /// What the last sample did, in a sentence: which place was sampled, which vertex is nearest, and where the tree was
-    /// steered to. Nothing before the first sample, nor of a race.
+    /// Returns what the last sample did, in a sentence: which place was sampled, which vertex is nearest, and where the
+    /// tree was steered to. Nothing before the first sample, nor of a race.
     pub fn sentence(&self) -> Option<String> {
         let step = self.last().filter(|_| !self.is_race())?;
         let sample = format!("Sample {} is {}", self.samples(), place(step.sample_m));

@@ -4,8 +4,8 @@ use rmpl::Span;
 
 use super::SyntaxRole;
 
-/// What the pieces of a line or more are, in textual order. `range` may begin anywhere: a string never continues over the
-/// end of a line, and what `range` cuts is read from the beginning of its line.
+/// Returns what the pieces of a line or more are, in textual order. `range` may begin anywhere: a string never
+/// continues over the end of a line, and what `range` cuts is read from the beginning of its line.
 pub(super) fn roles(text: &str, range: Span) -> Vec<(Span, SyntaxRole)> {
     let bytes = text.as_bytes();
     let end = (range.end as usize).min(bytes.len());

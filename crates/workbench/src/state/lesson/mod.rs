@@ -84,12 +84,12 @@ impl LessonState {
         self.open.as_ref()
     }
 
-    /// What is wrong in it, by line.
+    /// Returns what is wrong in it, by line.
     pub fn errors(&self) -> &[LessonError] {
         &self.errors
     }
 
-    /// Where the lesson is, from 0.
+    /// Returns where the lesson is, from 0.
     pub const fn at(&self) -> usize {
         self.stop
     }
@@ -99,12 +99,12 @@ impl LessonState {
         self.open.as_ref()?.stops.get(self.stop)
     }
 
-    /// Whether what the stop shows is still to be shown: the core is at work for it.
+    /// Returns whether what the stop shows is still to be shown: the core is at work for it.
     pub const fn is_due(&self) -> bool {
         self.is_due
     }
 
-    /// Whether the panels stand as the lesson, or the contents of the course, want them.
+    /// Returns whether the panels stand as the lesson, or the contents of the course, want them.
     pub const fn is_beside(&self) -> bool {
         self.is_beside
     }
@@ -124,12 +124,12 @@ impl LessonState {
         self.opened.as_ref().map(LessonMission::source)
     }
 
-    /// What was answered last at the stop where the lesson is.
+    /// Returns what was answered last at the stop where the lesson is.
     pub fn given(&self) -> Option<&Given> {
         self.answers.get(&(self.open.as_ref()?.name.clone(), self.stop))
     }
 
-    /// How the last answer at the stop where the lesson is was judged, in words; nothing before one was given.
+    /// Returns how the last answer at the stop where the lesson is was judged, in words; nothing before one was given.
     pub fn verdict(&self) -> Option<String> {
         let answer = &self.stop()?.ask.as_ref()?.answer;
         if let Answer::Prediction(_) = answer {
@@ -143,7 +143,7 @@ impl LessonState {
         Some(words.to_owned())
     }
 
-    /// What was predicted at the stop where the lesson is.
+    /// Returns what was predicted at the stop where the lesson is.
     pub const fn predictions(&self) -> &Predictions {
         &self.predictions
     }
@@ -169,7 +169,7 @@ impl LessonState {
     }
 }
 
-/// What a right answer is remembered under.
+/// Returns what a right answer is remembered under.
 pub(crate) fn learned_key(lesson: &str, stop: usize) -> String {
     format!("{lesson}/{}", stop + 1)
 }

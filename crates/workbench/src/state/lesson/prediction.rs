@@ -24,7 +24,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Whether what was shown is what the student had predicted.
+    /// Returns whether what was shown is what the student had predicted.
     pub fn is_right(&self) -> bool {
         self.given == self.shown
     }
@@ -40,22 +40,22 @@ impl Prediction {
 }
 
 impl Predictions {
-    /// What was predicted and has been shown, in order.
+    /// Returns what was predicted and has been shown, in order.
     pub fn made(&self) -> &[Prediction] {
         &self.made
     }
 
-    /// How many of them were right.
+    /// Returns how many of them were right.
     pub fn right(&self) -> usize {
         self.made.iter().filter(|prediction| prediction.is_right()).count()
     }
 
-    /// Whether nothing is left to predict.
+    /// Returns whether nothing is left to predict.
     pub const fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Whether the core still computes what was predicted.
+    /// Returns whether the core still computes what was predicted.
     pub const fn is_pending(&self) -> bool {
         self.pending.is_some()
     }

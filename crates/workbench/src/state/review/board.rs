@@ -13,7 +13,7 @@ use super::{Person, ReviewState, Reviewing};
 use crate::state::settings::PlanSettings;
 
 impl ReviewState {
-    /// How the plan stands with its board; `None` before it is known what the plan is about.
+    /// Returns how the plan stands with its board; `None` before it is known what the plan is about.
     pub fn standing(&self) -> Option<Standing<'_>> {
         let review = self.current().map(AsRef::as_ref);
         let present = Present {

@@ -24,8 +24,8 @@ impl Exclusion {
     }
 }
 
-/// What excludes each state of a search. Takes time in proportion to its steps and states, times the logarithm of what it
-/// has learned.
+/// Returns what excludes each state of a search. Takes time in proportion to its steps and states, times the logarithm
+/// of what it has learned.
 pub fn exclusions(trace: &Trace) -> Vec<Option<Exclusion>> {
     let mut excluded = vec![None; trace.tree.len()];
     let mut taught: BTreeMap<&[TreeChoice], usize> = BTreeMap::new();

@@ -19,13 +19,14 @@ pub struct Focus {
     pub spans: Vec<Span>,
 }
 
-/// Whether a step tells what the search does: a choice, a failure, what follows from it. The others only prepare it.
+/// Returns whether a step tells what the search does: a choice, a failure, what follows from it. The others only
+/// prepare it.
 pub fn is_key(event: &Event) -> bool {
     !matches!(event, Event::Expand { .. } | Event::AddArc { .. } | Event::Propagate { .. })
 }
 
 impl Focus {
-    /// What a reason why there is no plan is about.
+    /// Returns what a reason why there is no plan is about.
     pub fn of_reason(network: &Network, reason: &Reason) -> Self {
         let mut focus = Self { is_failure: true, ..Self::default() };
         for member in &reason.conflict {
@@ -45,7 +46,7 @@ impl Focus {
         focus
     }
 
-    /// What the step of `trace` that was replayed as `step` is about.
+    /// Returns what the step of `trace` that was replayed as `step` is about.
     pub fn of(network: &Network, trace: &Trace, step: &ReplayStep) -> Self {
         let mut focus = Self::default();
         let Some(entry) = trace.events.get(step.step) else { return focus };
@@ -194,7 +195,7 @@ impl Focus {
     }
 }
 
-/// Whether an event is a failure.
+/// Returns whether an event is a failure.
 pub fn is_failure(event: &Event) -> bool {
     matches!(
         event,
@@ -212,7 +213,7 @@ pub fn is_failure(event: &Event) -> bool {
     )
 }
 
-/// What the other panels select when a state of the search is clicked: what was chosen there.
+/// Returns what the other panels select when a state of the search is clicked: what was chosen there.
 pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection {
     match choice {
         None | Some(TreeChoice::Apart) => Selection::None,
@@ -232,8 +233,8 @@ pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection 
     }
 }
 
-/// Whether a state of the search is about what is selected: the choice itself, its decision, or a condition that the
-/// choice links or orders.
+/// Returns whether a state of the search is about what is selected: the choice itself, its decision, or a condition
+/// that the choice links or orders.
 pub fn concerns(choice: Option<TreeChoice>, selection: &Selection, network: &Network) -> bool {
     let Some(choice) = choice else { return false };
     let owns = |label: LabelId| match selection {

@@ -78,7 +78,7 @@ impl MergedTree {
         merged
     }
 
-    /// Who entered a state.
+    /// Returns who entered a state.
     pub fn share(&self, id: TreeNodeId) -> Share {
         match self.entered.get(id as usize) {
             Some([true, true]) => Share::Both,
@@ -88,7 +88,7 @@ impl MergedTree {
         }
     }
 
-    /// How many states were entered by whom.
+    /// Returns how many states were entered by whom.
     pub fn counts(&self) -> ShareCounts {
         let mut counts = ShareCounts::default();
         for id in 0..self.entered.len() {
@@ -102,7 +102,7 @@ impl MergedTree {
     }
 }
 
-/// How much is known by a status.
+/// Returns how much is known by a status.
 const fn progress(status: TreeStatus) -> u8 {
     match status {
         TreeStatus::Unexplored => 0,

@@ -122,37 +122,38 @@ impl SearchState {
         self.view(self.side).map(|view| view.step.as_ref())
     }
 
-    /// What one side looks at.
+    /// Returns what one side looks at.
     pub fn view(&self, side: usize) -> Option<&View> {
         self.views.get(side)?.as_ref()
     }
 
-    /// What the panels show.
+    /// Returns what the panels show.
     pub fn shown(&self) -> Option<&View> {
         self.view(self.side)
     }
 
-    /// Which side the panels show and the keys step.
+    /// Returns which side the panels show and the keys step.
     pub fn side(&self) -> usize {
         self.side
     }
 
-    /// Whether both searches are wanted side by side.
+    /// Returns whether both searches are wanted side by side.
     pub fn compares(&self) -> bool {
         self.compares
     }
 
-    /// Whether both step together.
+    /// Returns whether both step together.
     pub fn is_linked(&self) -> bool {
         self.is_linked
     }
 
-    /// Whether stepping and playing go from one key step to the next.
+    /// Returns whether stepping and playing go from one key step to the next.
     pub fn only_key(&self) -> bool {
         self.only_key
     }
 
-    /// What the search has selected at the step, in the form of a plan, if it is a step of the search of `snapshot`.
+    /// Returns what the search has selected at the step, in the form of a plan, if it is a step of the search of
+    /// `snapshot`.
     pub fn plan(&self, snapshot: &Snapshot) -> Option<&Arc<Plan>> {
         let view = self.shown()?;
         let network = snapshot.network.as_ref()?;
@@ -187,7 +188,7 @@ impl SearchState {
         (self.comparison, self.asked, self.wanted_step) = (None, None, None);
     }
 
-    /// Whether the core is to search in both ways for the text of `revision`, which it was not asked before.
+    /// Returns whether the core is to search in both ways for the text of `revision`, which it was not asked before.
     pub(crate) fn wants_comparison(&self, shown: Option<&Arc<Snapshot>>, revision: u64) -> bool {
         self.compares
             && self.comparison.is_none()
@@ -414,7 +415,7 @@ impl SearchState {
     }
 }
 
-/// Whether playing and running stop at a step.
+/// Returns whether playing and running stop at a step.
 fn stops_at(trace: &Trace, step: usize, breakpoints: Breakpoints) -> bool {
     let Some(entry) = trace.events.get(step) else { return false };
     match entry.event {

@@ -50,7 +50,7 @@ impl Recording {
         &self.network
     }
 
-    /// What the search did; it has at least one step.
+    /// Returns what the search did; it has at least one step.
     pub fn trace(&self) -> &Trace {
         let trace = match &self.source {
             Source::Planned(snapshot) => recorded(snapshot),
@@ -72,12 +72,12 @@ impl Recording {
         self.searched().map(|searched| searched.search)
     }
 
-    /// How many steps it has.
+    /// Returns how many steps it has.
     pub fn steps(&self) -> usize {
         self.trace().events.len()
     }
 
-    /// Whether `other` is the very same recording.
+    /// Returns whether `other` is the very same recording.
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.network, &other.network)
             && match (&self.source, &other.source) {

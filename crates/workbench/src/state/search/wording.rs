@@ -10,7 +10,7 @@ use crate::state::selection::node_name;
 use conflict_driven::{decided, gives, named};
 pub use conflict_driven::{learned, never};
 
-/// What was chosen in a state, in words.
+/// Returns what was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
     let words = match choice {
         None => "Initial state".to_owned(),
@@ -42,7 +42,7 @@ pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
     network.readable(&words.unwrap_or_else(|| plain(network, event)))
 }
 
-/// What a search that makes one choice after the other says in its own way.
+/// Returns what a search that makes one choice after the other says in its own way.
 fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> Option<String> {
     match event {
         Event::Backtrack { to } => Some(backtrack(network, trace, *to)),
@@ -52,7 +52,7 @@ fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> Option<Strin
     }
 }
 
-/// What both kinds of search say alike.
+/// Returns what both kinds of search say alike.
 fn plain(network: &Network, event: &Event) -> String {
     match event {
         Event::Expand { node } => format!("Expand {}: follow all outgoing arcs.", node_name(network, *node)),
