@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::keys::PublicKey;
 use super::record::{Act, Entry, LineKey, Record, Subject};
 use super::seat::Seat;
-use super::{FlightRules, Line, Review, Section, Status, Waiver};
+use super::{FlightRules, Line, Review, Section, Status, Waiver, names};
 
 /// How a plan stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ impl PlanStatus {
         }
     }
 
-    /// Whether the plan may fly.
+    /// Returns whether the plan may fly.
     pub const fn is_approved(self) -> bool {
         matches!(self, Self::Approved | Self::ApprovedWithComments)
     }
@@ -57,7 +57,7 @@ pub struct Present<'a> {
 }
 
 impl<'a> Present<'a> {
-    /// What a review is about.
+    /// Returns what a review is about.
     pub fn of_review(review: &'a Review) -> Self {
         Self {
             content_hash: &review.content_hash,
@@ -67,7 +67,7 @@ impl<'a> Present<'a> {
         }
     }
 
-    /// What is another than in `approval` of `record`, which approved `subject`; nothing if it counts.
+    /// Returns what is another than in `approval` of `record`, which approved `subject`; nothing if it counts.
     pub fn difference(&self, record: &Record, approval: &Entry, subject: &Subject) -> Option<&'static str> {
         self.difference_by(record, &Accepted::new(record, &record.waivers()), approval, subject)
     }
@@ -115,8 +115,9 @@ impl<'a> Accepted<'a> {
         self.0.get(&LineKey::new(section, line)).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// Whether an approval has signed an acknowledgment or a waiver that still holds for each item that needs attention that
-    /// someone has accepted. Without a review the lines are not known: all that the approval has signed has to hold.
+    /// Returns whether an approval has signed an acknowledgment or a waiver that still holds for each item that needs
+    /// attention that someone has accepted. Without a review the lines are not known: all that the approval has signed
+    /// has to hold.
     fn hold_for(&self, approval: &Entry, review: Option<&Review>) -> bool {
         let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
         let Some(review) = review else {
@@ -145,6 +146,10 @@ pub struct Standing<'a> {
     pub seats: Vec<Approvals<'a>>,
     /// The latest approval of a board that does not count any more, with what is another since.
     pub lapsed: Option<(&'a Entry, &'static str)>,
+    /// Entries that set different flight rules: see [`Record::conflicting_rules`].
+    pub conflicting_rules: Vec<&'a Entry>,
+    /// The last entry that sets flight rules, if unknown keys signed all such entries.
+    pub unknown_rules: Option<&'a Entry>,
     /// Comments that are not resolved, oldest first.
     pub open_comments: Vec<&'a Entry>,
     /// Items that need attention that no one has acknowledged, and that no waiver in force is about.
@@ -192,7 +197,13 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     }
     let failed = present.review.map_or(0, |review| review.count(Status::Failed));
     let lapsed = lapsed(record, &approvals, &accepted, present);
-    let is_blocked = !open_comments.is_empty() || !unacknowledged.is_empty() || failed > 0;
+    let conflicting_rules = record.conflicting_rules();
+    let unknown_rules = record.unknown_rules();
+    let is_blocked = !conflicting_rules.is_empty()
+        || unknown_rules.is_some()
+        || !open_comments.is_empty()
+        || !unacknowledged.is_empty()
+        || failed > 0;
     let is_complete = is_complete(&seats);
     let mut given = seats.iter().flat_map(|seat| &seat.given);
     let status = if is_complete && !is_blocked {
@@ -216,6 +227,8 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         status,
         seats,
         lapsed,
+        conflicting_rules,
+        unknown_rules,
         open_comments,
         unacknowledged,
         relied_on: relied_on.into_iter().collect(),
@@ -268,6 +281,19 @@ fn lapsed<'a>(
     })
 }
 
+/// The approvals of boards that are complete, oldest first.
+fn completed<'a>(
+    approvals: &[(&'a Entry, &'a Subject)],
+) -> impl DoubleEndedIterator<Item = (&'a Entry, &'a Subject)> {
+    let key = |entry: &'a Entry| (&entry.content_hash, &entry.plan_hash, &entry.rules);
+    let mut same: BTreeMap<_, (Vec<&'a Entry>, &'a Subject)> = BTreeMap::new();
+    for &(entry, subject) in approvals {
+        same.entry(key(entry)).or_insert_with(|| (Vec::new(), subject)).0.push(entry);
+    }
+    same.retain(|_, (entries, subject)| is_complete(&seats(&subject.rules.board, entries)));
+    approvals.iter().copied().filter(move |(entry, _)| same.contains_key(&key(entry)))
+}
+
 /// The comments of a record that are not resolved, oldest first.
 pub fn open_comments(record: &Record) -> Vec<&Entry> {
     let mut open: Vec<&Entry> = Vec::new();
@@ -285,8 +311,8 @@ pub fn open_comments(record: &Record) -> Vec<&Entry> {
 }
 
 impl Record {
-    /// Who acknowledged which line, or waived it, last; each holds for a line as long as it says the same at the same
-    /// place.
+    /// Returns who acknowledged which line, or waived it, last; each holds for a line as long as it says the same at
+    /// the same place.
     pub fn acknowledgments(&self) -> BTreeMap<&LineKey, &Entry> {
         let mut last = BTreeMap::new();
         for (line, entries) in Accepted::new(self, &self.waivers()).0 {
@@ -294,17 +320,40 @@ impl Record {
         }
         last
     }
+
+    /// The latest approval that has not been taken back, with what was approved: of those that completed a board, or of all
+    /// if no board has been completed. Otherwise whoever approves first would hide what changed from the others.
+    pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
+        let approvals: Vec<(&Entry, &Subject)> =
+            self.standing_entries().filter_map(|entry| Some((entry, self.subject(entry)?))).collect();
+        let mut completed =
+            completed(&approvals).filter(|(entry, _)| self.ruling().was_in_force(&entry.rules));
+        completed.next_back().or_else(|| approvals.last().copied())
+    }
 }
 
 impl Standing<'_> {
-    /// What is in the way of any approval, in words.
+    /// Returns what is in the way of any approval, in words.
     pub fn blockers(&self) -> Vec<String> {
         let some = |count: usize, one: &str, many: &str| {
             (count > 0).then(|| format!("{count} {}", if count == 1 { one } else { many }))
         };
         let missing = self.missing.map(str::to_owned);
+        let names: Vec<String> =
+            self.conflicting_rules.iter().map(|entry| names::one_line(&entry.by)).collect();
+        let conflicting = (!names.is_empty()).then(|| {
+            format!(
+                "{} set different flight rules without knowing of each other: set them again",
+                names.join(" and ")
+            )
+        });
+        let unknown = self.unknown_rules.map(|entry| {
+            format!("the flight rules are set by {}, whose key is unknown", names::one_line(&entry.by))
+        });
         missing
             .into_iter()
+            .chain(conflicting)
+            .chain(unknown)
             .chain(some(self.failed, "item has failed", "items have failed"))
             .chain(some(
                 self.unacknowledged.len(),

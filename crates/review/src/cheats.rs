@@ -54,7 +54,7 @@ impl Board {
         }
     }
 
-    /// What someone says who comes after no one, without an act of its own.
+    /// Returns what someone says who comes after no one, without an act of its own.
     fn said(&mut self, by: &str) -> Said {
         let who = self.who(by);
         let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
@@ -113,7 +113,7 @@ impl Board {
     }
 }
 
-/// What was found of the last entry.
+/// Returns what was found of the last entry.
 fn last_check(record: &Record) -> (Signature, String) {
     let (_, check) = record.checked().next_back().expect("an entry");
     (check.signature, check.problem.clone().unwrap_or_default())
@@ -172,7 +172,7 @@ fn a_key_has_one_name_and_its_two_halves_belong_together() {
     assert!(!ring.to_json(false).contains("secret"));
     let foreign = ring.to_json(true).replace(key("Ada").public().as_str(), key("Grace").public().as_str());
     assert!(matches!(KeyRing::from_json(&foreign), Err(KeyError::Damaged(_))));
-    for (format, wrong) in [("enroute-keys/2", "later version"), ("enroute-rules/1", "no keys")] {
+    for (format, wrong) in [("enroute-keys/2", "later version"), ("enroute-rules/1", "not a key file")] {
         let refused = KeyRing::from_json(&json!({ "format": format, "keys": [] }).to_string());
         assert!(refused.expect_err("another format").to_string().contains(wrong), "{format}");
     }

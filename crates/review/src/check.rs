@@ -46,7 +46,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Whether the entry counts.
+    /// Returns whether the entry counts.
     pub fn counts(&self) -> bool {
         self.signature == Signature::Valid && self.problem.is_none()
     }
@@ -173,7 +173,7 @@ pub enum Objection {
 }
 
 impl Objection {
-    /// What is said of an entry that does `act` all the same.
+    /// Returns what is said of an entry that does `act` all the same.
     const fn words(self, act: &Act) -> &'static str {
         match (self, act) {
             (Self::NoReason, Act::Resolve { .. }) => "a resolution needs a reason",
@@ -190,12 +190,12 @@ impl Objection {
     }
 }
 
-/// Whether a waiver that is signed on one day lapses on a later one.
+/// Returns whether a waiver that is signed on one day lapses on a later one.
 pub(super) fn can_lapse(signed: Option<civil::Date>, until: civil::Date) -> bool {
     signed.is_some_and(|signed| signed < until)
 }
 
-/// What there is to say against `act` of the owner of a key, after what `record` has, on the day `signed`.
+/// Returns what there is to say against `act` of the owner of a key, after what `record` has, on the day `signed`.
 pub fn objection(
     record: &Record,
     key: Option<&PublicKey>,
@@ -205,7 +205,7 @@ pub fn objection(
     let of = || act.of().and_then(|of| record.entry(of));
     let is_signer = || key.is_some() && of().is_some_and(|of| of.key.as_ref() == key);
     let is_concerned = || key.zip(of()).is_some_and(|(key, of)| is_concerned(key, of));
-    let is_silent = || act.text().trim().is_empty();
+    let is_silent = || !act.text().chars().any(|it| it.is_alphanumeric() && !names::is_hidden(it));
     match act {
         Act::Resolve { .. } | Act::Acknowledge { .. } | Act::Waive { .. } if is_silent() => {
             Some(Objection::NoReason)
@@ -222,12 +222,12 @@ pub fn objection(
     }
 }
 
-/// Whether no one can withdraw this. Flight rules are replaced, and comments are reopened.
+/// Returns whether no one can withdraw this. Flight rules are replaced, and comments are reopened.
 const fn is_permanent(act: &Act) -> bool {
     matches!(act, Act::Rules { .. } | Act::Resolve { .. } | Act::Reopen { .. } | Act::Withdraw { .. })
 }
 
-/// Whether the owner of a key wrote the comment `of`, or is the person to whom it is addressed.
+/// Returns whether the owner of a key wrote the comment `of`, or is the person to whom it is addressed.
 pub fn is_concerned(key: &PublicKey, of: &Entry) -> bool {
     match &of.act {
         Act::Comment { to, .. } => of.key.as_ref() == Some(key) || to.as_ref() == Some(key),
@@ -235,7 +235,7 @@ pub fn is_concerned(key: &PublicKey, of: &Entry) -> bool {
     }
 }
 
-/// Whether the first of two times is later by more than clocks may differ.
+/// Returns whether the first of two times is later by more than clocks may differ.
 pub(super) fn is_after(later: &str, earlier: &str) -> bool {
     let times = moment(earlier).zip(moment(later));
     times.is_some_and(|(earlier, later)| earlier.duration_until(later) > CLOCK_TOLERANCE)

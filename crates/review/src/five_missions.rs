@@ -200,7 +200,7 @@ fn cases(snapshot: &Snapshot, rules: &FlightRules) -> Vec<(String, Review)> {
         time: 1.0,
         position_m: nalgebra::Point2::origin(),
         distance_m: 0.1,
-        least_m: 2.2,
+        min_m: 2.2,
         schedule: Vec::new(),
     };
     add(
@@ -218,7 +218,7 @@ fn runs(succeeded: u64) -> Robustness {
     Robustness { settings, tally: Tally { runs: 100, succeeded, ..Tally::default() } }
 }
 
-/// What a line is about, whatever was found of it.
+/// Returns what a line is about, whatever was found of it.
 fn subject(text: &str) -> &str {
     let found_either_way = [
         ("there is a plan", "there is no plan"),
@@ -233,7 +233,7 @@ fn subject(text: &str) -> &str {
     text.split([':', '[']).next().unwrap_or(text)
 }
 
-/// Whether the checker objects to something that a line is about.
+/// Returns whether the checker objects to something that a line is about.
 fn blames(review: &Review, line: &super::Line) -> bool {
     let mut objections =
         review.plan.iter().filter(|it| it.text.starts_with("the independent checker rejects"));

@@ -38,7 +38,7 @@ impl Line {
 const CHECKER: &str = "the independent checker accepts the plan";
 
 impl MissionRule {
-    /// What was found of a rule, as a line. What has not been evaluated never counts as held.
+    /// Returns what was found of a rule, as a line. What has not been evaluated never counts as held.
     pub fn line(&self, findings: &[Finding]) -> Line {
         let found = findings.iter().find(|it| it.rule == self.rule);
         let broken = if self.waivable { Status::Attention } else { Status::Failed };
@@ -127,7 +127,7 @@ impl Review {
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
     }
 
-    /// Whether every rule of the mission has been evaluated.
+    /// Returns whether every rule of the mission has been evaluated.
     pub fn is_evaluated(&self, rules: &FlightRules) -> bool {
         rules.rules.iter().all(|rule| self.findings.iter().any(|it| it.rule == rule.rule))
     }
@@ -177,13 +177,9 @@ impl Review {
 
     fn judge_traverses(&mut self, rules: &FlightRules) {
         for traverse in &mut self.traverses {
-            if let (Some(clearance_m), Some(least_m)) = (traverse.clearance_m, rules.clearance_m) {
+            if let (Some(clearance_m), Some(min_m)) = (traverse.clearance_m, rules.clearance_m) {
                 let source = FlightRules::source(|it| it.clearance_m == rules.clearance_m);
-                traverse.line.judge(
-                    clearance_m >= least_m,
-                    &format!("clearance at least {least_m} m"),
-                    source,
-                );
+                traverse.line.judge(clearance_m >= min_m, &format!("clearance at least {min_m} m"), source);
             }
             let slope_deg = traverse.slope_max_rad.to_degrees();
             // Who flies is held to no slope.
@@ -220,7 +216,7 @@ impl Review {
     }
 }
 
-/// What runs with chance came to, held against the rule.
+/// Returns what runs with chance came to, held against the rule.
 fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
     let (tally, settings) = (&found.tally, &found.settings);
     let (low, high) = tally.interval();

@@ -37,7 +37,7 @@ impl PublicKey {
         groups.collect::<Vec<_>>().join(" ")
     }
 
-    /// Whether its owner signed this message.
+    /// Returns whether its owner signed this message.
     pub fn verify(&self, message: &[u8], signature: &str) -> bool {
         let signature = HEXLOWER.decode(signature.as_bytes()).ok();
         let signature = signature.and_then(|bytes| Signature::from_slice(&bytes).ok());
@@ -151,9 +151,9 @@ pub enum KeyError {
     #[error("the key {fingerprint} is trusted already, as that of “{known}”")]
     Known { fingerprint: String, known: String },
     /// The text is not a document of keys, or a key in it is invalid.
-    #[error("these are no keys: {0}")]
+    #[error("this is not a key file: {0}")]
     Damaged(String),
-    #[error("these keys are of a later version of this program: {0}")]
+    #[error("a later version of Enroute wrote these keys: {0}")]
     Newer(String),
 }
 
@@ -228,12 +228,12 @@ impl KeyRing {
         match document["format"].as_str() {
             Some(KEYS_FORMAT) => {}
             Some(newer) if newer.starts_with(FORMATS) => return Err(KeyError::Newer(newer.to_owned())),
-            _ => return Err(KeyError::Damaged(format!("their format is not \"{KEYS_FORMAT}\""))),
+            _ => return Err(KeyError::Damaged(format!("its format is not \"{KEYS_FORMAT}\""))),
         }
         let written: Vec<Written> = serde_json::from_value(document["keys"].take()).map_err(damaged)?;
         let mut ring = Self::default();
         for Written { name, key, secret } in written {
-            let wrong = |what: &str| KeyError::Damaged(format!("the {what} of “{name}” is none"));
+            let wrong = |what: &str| KeyError::Damaged(format!("the {what} of “{name}” is not valid"));
             let key = PublicKey::read(&key).ok_or_else(|| wrong("key"))?;
             let secret = match secret {
                 None => None,

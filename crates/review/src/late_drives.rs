@@ -35,7 +35,7 @@ pub(super) fn late_drives(snapshot: &Snapshot, network: &Network, plan: &Plan) -
             }
             continue;
         }
-        let least = Time::checked_sum(traverse.leg_figures.iter().map(|leg| leg.least_duration));
+        let least = Time::checked_sum(traverse.leg_figures.iter().map(|leg| leg.min_duration));
         let in_all = Time::from_f64_up(driven_s, 1000).and_then(|driven_s| driven_s.checked_div(unit_s));
         let slow = in_all
             .zip(least)
@@ -61,11 +61,11 @@ pub(super) fn late_drives(snapshot: &Snapshot, network: &Network, plan: &Plan) -
     late
 }
 
-/// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
+/// Returns how long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
 pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: &snapshot::Traverse) -> f64 {
     let program = &snapshot.program;
     let unit_s = program.options.time_unit.seconds() as f64;
-    let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+    let least: f64 = traverse.leg_figures.iter().map(|leg| leg.min_duration.to_f64()).sum();
     let occurrence = &network.occurrences[traverse.occurrence.index()];
     let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
     let models = traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
@@ -292,8 +292,8 @@ impl Execution {
         self.steps.push(step);
     }
 
-    /// Whether a deadline is met whatever anything takes, as far as this shows it. `earliest` is when the event that it
-    /// counts from can happen.
+    /// Returns whether a deadline is met whatever anything takes, as far as this shows it. `earliest` is when the event
+    /// that it counts from can happen.
     ///
     /// An event comes right after one of those that it follows, so it is at most as far from `since` as the farthest of
     /// these, and what they take; and it is never farther than what there is at least between it and a later `since`.
@@ -323,7 +323,7 @@ impl Execution {
         farthest[deadline.event].is_some_and(|event| event <= deadline.within)
     }
 
-    /// How long after one point each other comes, or how long before it, by the longest way along the steps.
+    /// Returns how long after one point each other comes, or how long before it, by the longest way along the steps.
     fn times(&self, from: usize, is_before: bool, length: impl Fn(&Step) -> i64) -> Vec<Option<i64>> {
         let mut times: Vec<Option<i64>> = vec![None; self.before.len()];
         times[from] = Some(0);

@@ -31,7 +31,7 @@ pub mod schedule;
 pub mod sealed;
 pub mod seat;
 pub mod since;
-mod strict;
+pub mod strict;
 pub mod waivers;
 
 pub use alternatives::{Alternative, Fate};

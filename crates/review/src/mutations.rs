@@ -228,7 +228,7 @@ fn vehicles_that_come_near_each_other() {
             time: 2.0,
             position_m: nalgebra::Point2::new(1.0, 2.0),
             distance_m: 0.5,
-            least_m: 2.2,
+            min_m: 2.2,
             schedule: Vec::new(),
         };
         snapshot.separation_violations = vec![violation].into();

@@ -17,7 +17,7 @@ pub fn tidy(name: &str) -> String {
     composed.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Whether all characters of a text of one line can be seen. Others break the line, reorder it, or hide in it.
+/// Returns whether all characters of a text of one line can be seen. Others break the line, reorder it, or hide in it.
 pub fn is_visible(text: &str) -> bool {
     !text.chars().any(is_hidden)
 }
@@ -27,9 +27,9 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(|letter| if is_hidden(letter) { ' ' } else { letter }).collect()
 }
 
-/// Whether a character is a control, a line break, or one that leaves no mark, such as the override that makes a text run
-/// from right to left.
-fn is_hidden(letter: char) -> bool {
+/// Returns whether a character is a control, a line break, or one that leaves no mark, such as the override that makes
+/// a text run from right to left.
+pub(super) fn is_hidden(letter: char) -> bool {
     let hides = || {
         let kind = letter.identifier_type();
         matches!(kind, Some(IdentifierType::Default_Ignorable | IdentifierType::Deprecated))
@@ -37,7 +37,7 @@ fn is_hidden(letter: char) -> bool {
     letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}') || hides()
 }
 
-/// What is wrong with a name, no matter who has it.
+/// Returns what is wrong with a name, no matter who has it.
 pub fn problem(name: &str) -> Option<String> {
     let is_word_mixed = |word: &str| !word.is_single_script();
     let composed: String = name.nfc().collect();
@@ -64,30 +64,30 @@ pub fn problem(name: &str) -> Option<String> {
     Some(format!("“{mixed}” mixes letters of several scripts, so it can look like another name"))
 }
 
-/// Whether a character is a letter, a mark on one, or a digit.
+/// Returns whether a character is a letter, a mark on one, or a digit.
 fn is_of_words(letter: char) -> bool {
     letter.is_alphanumeric() || is_combining_mark(letter)
 }
 
-/// Whether a letter is in use today (Unicode Technical Standard 39), and no variant of another one: not a small capital, not
-/// a letter of phonetics. Scripts of few people are in use.
+/// Returns whether a letter is in use today (Unicode Technical Standard 39), and no variant of another one: not a small
+/// capital, not a letter of phonetics. Scripts of few people are in use.
 fn is_usual(letter: char) -> bool {
     letter.identifier_allowed() || letter.identifier_type() == Some(IdentifierType::Limited_Use)
 }
 
-/// Whether a character is between the words and letters of names and roles. Comparisons leave it out.
+/// Returns whether a character is between the words and letters of names and roles. Comparisons leave it out.
 fn is_sign(letter: char) -> bool {
     let joins = || letter.identifier_type() == Some(IdentifierType::Inclusion) && letter != ':';
     letter.is_whitespace() || "'’-‐.·,&/()".contains(letter) || joins()
 }
 
-/// Whether people could take one name for the other: they are the same without case, accents, spaces and signs, or by
-/// the letters that they look like (the skeletons of Unicode Technical Standard 39, and a few pairs more).
+/// Returns whether people could take one name for the other: they are the same without case, accents, spaces and signs,
+/// or by the letters that they look like (the skeletons of Unicode Technical Standard 39, and a few pairs more).
 pub fn are_alike(one: &str, other: &str) -> bool {
     !forms(one).is_disjoint(&forms(other))
 }
 
-/// What a name looks like: as it is written, and in small letters, for `I` looks like `l` and `i` does not.
+/// Returns what a name looks like: as it is written, and in small letters, for `I` looks like `l` and `i` does not.
 fn forms(name: &str) -> BTreeSet<String> {
     // Small letters of Cherokee look like small capitals of Latin.
     let capital = |letter: char| match letter {
@@ -112,8 +112,21 @@ fn letters(form: impl Iterator<Item = char>) -> String {
 }
 
 /// Letters and digits that look like others, in small letters, where the standard tells them apart.
-const PAIRS: [(char, &str); 8] =
-    [('w', "vv"), ('d', "cl"), ('m', "rn"), ('5', "s"), ('8', "b"), ('0', "o"), ('1', "l"), ('4', "a")];
+const PAIRS: [(char, &str); 13] = [
+    ('w', "vv"),
+    ('d', "cl"),
+    ('m', "rn"),
+    ('0', "o"),
+    ('1', "l"),
+    ('2', "z"),
+    ('3', "e"),
+    ('4', "a"),
+    ('5', "s"),
+    ('6', "b"),
+    ('7', "t"),
+    ('8', "b"),
+    ('9', "g"),
+];
 
 #[cfg(test)]
 mod tests {
@@ -137,6 +150,9 @@ mod tests {
             ["5am", "Sam"],
             ["4da", "Ada"],
             ["8ob", "Bob"],
+            ["3ve", "Eve"],
+            ["2oe", "Zoe"],
+            ["7om", "Tom"],
             ["Rnaria", "Maria"],
             ["dara", "Clara"],
             ["Daude", "Claude"],

@@ -131,7 +131,7 @@ impl<'input> PlanLines<'input> {
         links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
     }
 
-    /// Who makes a state what someone needs, how long before, and who changes it after.
+    /// Returns who makes a state what someone needs, how long before, and who changes it after.
     fn lasting_link_text(&self, link: tpn::CausalLink, lead: TimeRange, margin: TimeRange) -> String {
         let owner_of = |label: LabelId| {
             let owner = self.network.labels[label.index()].owner?;
@@ -152,7 +152,7 @@ impl<'input> PlanLines<'input> {
             Some(next) if next == Some(needs) => format!("{needs} itself changes it then"),
             Some(next) => {
                 let margin = self.range_text(margin);
-                format!("{} changes it {margin} after that need", next.unwrap_or("the mission"))
+                format!("{} changes it {margin} after that", next.unwrap_or("the mission"))
             }
         };
         let is_from_plant = self.network.variables[told.literal.variable.index()].component().is_some();
@@ -266,7 +266,7 @@ impl<'input> PlanLines<'input> {
         after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
     }
 
-    /// What each vehicle may do at the same time.
+    /// Returns what each vehicle may do at the same time.
     pub(super) fn overlaps(&mut self) -> Vec<Line> {
         let planned = (self.network, self.plan);
         overlaps(self.snapshot, planned, &mut self.distances, self.places, self.checked)
@@ -396,6 +396,7 @@ impl<'input> PlanLines<'input> {
         let slope_limit_rad = self.slope_limit_rad(traverse);
         let whose = match vehicles.len() {
             0 | 1 => "its planned path".to_owned(),
+            2 => "the planned paths of both vehicles".to_owned(),
             count => format!("the planned paths of all {count} vehicles"),
         };
         let clearance = match clearance_m {
@@ -523,8 +524,8 @@ impl<'input> PlanLines<'input> {
         )
     }
 
-    /// How long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds: driven state by
-    /// state within their limits, which shares nothing with how its durations were planned.
+    /// Returns how long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds:
+    /// driven state by state within their limits, which shares nothing with how its durations were planned.
     fn needed_s(&self, traverse: &snapshot::Traverse) -> Option<f64> {
         let program = &self.snapshot.program;
         let occurrence = &self.network.occurrences[traverse.occurrence.index()];
@@ -543,7 +544,7 @@ impl<'input> PlanLines<'input> {
         Some(motion::drive_path(&path, heading_rad, &limits).duration_s())
     }
 
-    /// What all vehicles of a traverse can climb.
+    /// Returns what all vehicles of a traverse can climb.
     fn slope_limit_rad(&self, traverse: &snapshot::Traverse) -> Option<f64> {
         let world = &self.snapshot.program.world;
         let grades = traverse.vehicles.iter().filter_map(|&vehicle| {
@@ -556,7 +557,7 @@ impl<'input> PlanLines<'input> {
         grades.reduce(f64::min).map(libm::atan)
     }
 
-    /// How long something takes, with its unit.
+    /// Returns how long something takes, with its unit.
     fn range_text(&self, range: TimeRange) -> String {
         let unit = unit(self.snapshot);
         let least = range.least.readable();
@@ -572,7 +573,7 @@ impl<'input> PlanLines<'input> {
     }
 }
 
-/// What was taken, and rather than what.
+/// Returns what was taken, and rather than what.
 fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
     const MAX_NAMED: usize = 3;
     let taken = alternatives.iter().find(|it| it.fate == Fate::Taken).map_or("nothing", |it| &it.name);
@@ -615,7 +616,7 @@ pub(super) fn declared_durations<'network>(
     declared.collect()
 }
 
-/// How many meters beside its last location a traverse ends, if it does, and that location.
+/// Returns how many meters beside its last location a traverse ends, if it does, and that location.
 pub(super) fn short_of_its_goal_m<'program>(
     world: &'program World,
     traverse: &snapshot::Traverse,

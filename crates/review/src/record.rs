@@ -98,7 +98,7 @@ pub enum RecordError {
     },
     /// A later version of the program wrote it.
     #[error(
-        "this review is of a later version of this program: its format is {found}, and \"{FORMAT}\" is known here"
+        "a later version of Enroute wrote this review: its format is {found}, but this version reads \"{FORMAT}\""
     )]
     Newer {
         /// What it says of itself.
@@ -111,7 +111,7 @@ pub enum RecordError {
     Broken(String),
 }
 
-/// Whether a document says that it is a review, of whatever version.
+/// Returns whether a document says that it is a review, of whatever version.
 pub fn is_record(document: &Value) -> bool {
     document["format"].as_str().is_some_and(|format| format.starts_with(FORMATS))
 }
@@ -138,13 +138,13 @@ impl Record {
         self.nonce = HEXLOWER.encode(&random);
     }
 
-    /// Which history it is: the digest of its first entry. Empty in histories of earlier versions.
+    /// Returns which history it is: the digest of its first entry. Empty in histories of earlier versions.
     pub fn history(&self) -> &str {
         &self.history
     }
 
-    /// Whether `other` is the same history, or one of the two is not a history yet. Those of earlier versions are the same
-    /// if they have a first entry in common.
+    /// Returns whether `other` is the same history, or one of the two is not a history yet. Those of earlier versions
+    /// are the same if they have a first entry in common.
     pub fn is_same_history(&self, other: &Self) -> bool {
         let starts = |it: &Self| {
             let starts = it.entries.iter().filter(|entry| match it.history.as_str() {
@@ -157,17 +157,17 @@ impl Record {
         is_new || (self.history == other.history && !starts(self).is_disjoint(&starts(other)))
     }
 
-    /// Whether an entry is the first one, or was made after it.
+    /// Returns whether an entry is the first one, or was made after it.
     pub(super) fn is_after_first(&self, entry: &Entry) -> bool {
         self.numbers.get(entry.digest()).is_some_and(|&index| self.follows.get(index) == Some(&true))
     }
 
-    /// Whether trusted people started several histories of this mission, and they are joined here.
+    /// Returns whether trusted people started several histories of this mission, and they are joined here.
     pub(super) fn has_several_starts(&self) -> bool {
         self.starts > 1
     }
 
-    /// Whether no one has said anything yet, and no runs are kept.
+    /// Returns whether no one has said anything yet, and no runs are kept.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.runs.is_empty()
     }
@@ -212,18 +212,18 @@ impl Record {
         self.ruling = Ruling::new(&self.entries, &self.checks);
     }
 
-    /// Which entries set the flight rules.
+    /// Returns which entries set the flight rules.
     pub(super) fn ruling(&self) -> &Ruling {
         &self.ruling
     }
 
-    /// Whether an entry was made after the last change of the flight rules. Rules that were replaced and set again are
-    /// no longer those that an earlier approval is of.
+    /// Returns whether an entry was made after the last change of the flight rules. Rules that were replaced and set
+    /// again are no longer those that an earlier approval is of.
     pub fn is_under_rules(&self, entry: &Entry) -> bool {
         self.numbers.get(entry.digest()).is_some_and(|&index| self.ruling.is_under(index))
     }
 
-    /// Whether an entry comes before the flight rules that it names, wherever they are set.
+    /// Returns whether an entry comes before the flight rules that it names, wherever they are set.
     pub(super) fn precedes_its_rules(&self, entry: &Entry) -> bool {
         let first = self.first_rules.get(&entry.rules);
         let index = self.numbers.get(entry.digest()).copied().unwrap_or(self.checks.len());
@@ -240,7 +240,7 @@ impl Record {
         self.entries.get(*self.numbers.get(digest)?)
     }
 
-    /// What was found of the entry of this digest.
+    /// Returns what was found of the entry of this digest.
     pub fn check_of(&self, digest: &str) -> Option<&Check> {
         self.checks.get(*self.numbers.get(digest)?)
     }
@@ -250,7 +250,7 @@ impl Record {
         self.numbers.get(digest).map_or(0, |index| index + 1)
     }
 
-    /// What an approval is about.
+    /// Returns what an approval is about.
     pub fn subject(&self, entry: &Said) -> Option<&Subject> {
         match &entry.act {
             Act::Approve { subject, .. } => self.subjects.get(subject).map(|kept| &*kept.subject),
@@ -258,8 +258,8 @@ impl Record {
         }
     }
 
-    /// Whether an approval has signed a text, map, goal or seed of another content than it names. In histories of earlier
-    /// versions the map is not known: then only a text counts as another one whose content is known here.
+    /// Returns whether an approval has signed a text, map, goal or seed of another content than it names. In histories
+    /// of earlier versions the map is not known: then only a text counts as another one whose content is known here.
     pub(super) fn has_other_content(&self, entry: &Entry) -> bool {
         let Act::Approve { subject, .. } = &entry.act else { return false };
         let Some(Kept { subject, content_hash }) = self.subjects.get(subject) else { return false };
@@ -268,7 +268,7 @@ impl Record {
         is_other || self.known_sources.get(&entry.content_hash).is_some_and(|known| *known != subject.source)
     }
 
-    /// Whether an approval of this content has signed another text.
+    /// Returns whether an approval of this content has signed another text.
     pub fn contradicts(&self, content_hash: &str, source: &str) -> bool {
         let is_known = self.known_sources.get(content_hash).is_some_and(|known| known == source);
         let mut entries = self.entries.iter().filter(|entry| entry.content_hash == content_hash);
@@ -305,11 +305,6 @@ impl Record {
             _ => None,
         });
         withdrawals.collect()
-    }
-
-    /// The latest approval that has not been taken back, with what was approved.
-    pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
-        self.standing_entries().rev().find_map(|entry| Some((entry, self.subject(entry)?)))
     }
 
     /// The flight rules in force, otherwise the usual ones: see [`Record::ruled`].
@@ -426,7 +421,7 @@ impl Record {
         before - self.runs.len()
     }
 
-    /// What runs of this content came to.
+    /// Returns what runs of this content came to.
     pub fn runs_of(&self, content_hash: &str) -> Option<&Runs> {
         self.runs.iter().find(|runs| runs.content_hash == content_hash)
     }
@@ -460,7 +455,8 @@ impl Record {
         }
     }
 
-    /// Whether the entries of `other` can be added without mixing two histories: they are the same, or nothing counts here.
+    /// Returns whether the entries of `other` can be added without mixing two histories: they are the same, or nothing
+    /// counts here.
     pub fn can_join(&self, other: &Self) -> bool {
         self.is_same_history(other) || (self.counted().next().is_none() && other.counted().next().is_some())
     }
@@ -561,10 +557,10 @@ impl Record {
     ) -> Result<(), &'static str> {
         match &entry.act {
             _ if entry.digest() != digest => Err("has been changed"),
-            _ if known.contains(digest) => Err("is there twice"),
+            _ if known.contains(digest) => Err("occurs twice"),
             _ if !entry.former.iter().all(|former| known.contains(former)) => Err("follows a missing entry"),
             Act::Approve { subject, .. } if !self.subjects.contains_key(subject) => {
-                Err("approves a missing content")
+                Err("approves content that is missing")
             }
             act if act.of().is_some_and(|of| !known.contains(of)) => Err("is about a missing entry"),
             _ => Ok(()),

@@ -150,7 +150,7 @@ fn whatever_is_altered_is_said_with_its_entry() {
         subjects.values_mut().for_each(|subject| subject["source"] = json!("scenario S = { delay }"));
     };
     says(altered(other_source), "the approved subject");
-    says(altered(|it| it["subjects"] = json!({})), "approves a missing content");
+    says(altered(|it| it["subjects"] = json!({})), "approves content that is missing");
 }
 
 #[test]

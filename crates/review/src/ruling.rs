@@ -2,14 +2,19 @@
 //!
 //! Every trusted person sets flight rules. Rules that weaken the board take effect once people who could complete the
 //! board in force have signed the same rules: otherwise one person could set a board that this person alone completes.
+//! If two people set rules without knowing of each other, the stricter board is in force; if neither is stricter, nothing is
+//! approved until someone sets rules that follow both.
 
 use std::collections::BTreeSet;
 
 use super::FlightRules;
-use super::check::Check;
+use super::check::{Check, Signature};
 use super::keys::PublicKey;
 use super::record::{Act, Entry, Record};
 use super::seat;
+
+/// Rules in force beside each other, at most.
+const MAX_CONFLICTING: usize = 8;
 
 /// Which entries set the flight rules in force, by their indices.
 #[derive(Clone, Debug, Default)]
@@ -18,63 +23,175 @@ pub(super) struct Ruling {
     set_by: Vec<usize>,
     /// Those that set the board in force, and perhaps other flight rules with it.
     board_by: Vec<usize>,
+    /// Entries that set the rules in force and others beside them: the signer of each did not know the others, and none of
+    /// the boards is at least as strict as all others.
+    conflicting: Vec<usize>,
     /// Which entries follow the last change of the rules; `None` if they have never changed.
     under: Option<Vec<bool>>,
     /// Changes that the board in force has not agreed to, each with the entries that ask for it.
     proposed: Vec<Vec<usize>>,
     /// Entries that set rules to which the board did not agree.
     without_effect: BTreeSet<usize>,
+    /// The digests of rules that are in force, or have been.
+    ever_in_force: BTreeSet<String>,
+}
+
+/// Rules in force.
+struct InForce<'a> {
+    rules: &'a FlightRules,
+    digest: String,
+    set_by: Vec<usize>,
+    board_by: Vec<usize>,
+    /// The digests of entries that follow the last change to these rules, and of that one; `None` of the usual rules,
+    /// which everyone knows.
+    followers: Option<BTreeSet<&'a str>>,
+}
+
+impl InForce<'_> {
+    /// Returns whether the signer of an entry knew these rules.
+    fn is_known_to(&self, entry: &Entry) -> bool {
+        let follows = |followers: &BTreeSet<&str>| {
+            followers.contains(entry.digest())
+                || entry.former.iter().any(|former| followers.contains(former.as_str()))
+        };
+        self.followers.as_ref().is_none_or(follows)
+    }
+}
+
+/// What an entry that sets rules does to rules in force.
+enum Effect {
+    /// It replaces them.
+    Replaces,
+    /// It replaces them if their board agrees.
+    Weakens,
+    /// Its signer did not know them, and neither board is at least as strict as the other.
+    Conflicts,
+    /// Its signer did not know them, and they are stricter.
+    Nothing,
+}
+
+fn effect(entry: &Entry, rules: &FlightRules, before: &InForce<'_>) -> Effect {
+    let weakens = seat::weakens(&before.rules.board, &rules.board);
+    match (weakens, before.is_known_to(entry)) {
+        (false, _) => Effect::Replaces,
+        (true, true) => Effect::Weakens,
+        (true, false) if seat::weakens(&rules.board, &before.rules.board) => Effect::Conflicts,
+        (true, false) => Effect::Nothing,
+    }
 }
 
 impl Ruling {
-    /// Of entries in order, with what was found of each.
+    /// Of entries in order, with what was found of each. Everyone chooses the dates of their entries, and what these
+    /// follow, so the order decides nothing between entries that do not follow each other: only the stricter board has effect.
     pub(super) fn new(entries: &[Entry], checks: &[Check]) -> Self {
         let usual = FlightRules::default();
         let mut ruling = Self::default();
-        let (mut in_force, mut digest, mut since) = (&usual, usual.digest(), None);
+        let mut in_force = vec![InForce {
+            rules: &usual,
+            digest: usual.digest(),
+            set_by: Vec::new(),
+            board_by: Vec::new(),
+            followers: None,
+        }];
+        ruling.ever_in_force.insert(usual.digest());
         for (index, (entry, check)) in entries.iter().zip(checks).enumerate() {
+            for before in &mut in_force {
+                if before.is_known_to(entry) {
+                    before.followers.as_mut().map(|followers| followers.insert(entry.digest()));
+                }
+            }
             let Act::Rules { rules } = &entry.act else { continue };
-            if !check.counts() {
-                continue;
+            if check.counts() {
+                ruling.add(entries, (index, rules), &mut in_force);
             }
-            if rules == in_force {
-                // No change: approvals before it are of the same rules.
-                if ruling.set_by.is_empty() {
-                    (ruling.set_by, ruling.board_by) = (vec![index], vec![index]);
-                }
-                continue;
-            }
-            let mut signed = vec![index];
-            if seat::weakens(&in_force.board, &rules.board) {
-                // Who agreed to leave other rules than these did not agree to leave these.
-                if !ruling.set_by.is_empty() && entry.rules != digest {
-                    ruling.without_effect.insert(index);
-                    continue;
-                }
-                let same = |indices: &Vec<usize>| rules_of(entries, indices) == Some(rules);
-                if let Some(known) = ruling.proposed.iter().position(same) {
-                    signed = ruling.proposed.remove(known);
-                    signed.push(index);
-                }
-                if seat::filled(&in_force.board, &keys_of(entries, &signed)) < seat::wanted(&in_force.board) {
-                    ruling.without_effect.insert(index);
-                    ruling.proposed.push(signed);
-                    continue;
-                }
-            }
-            ruling.without_effect.retain(|index| !signed.contains(index));
-            if rules.board != in_force.board || ruling.board_by.is_empty() {
-                ruling.board_by.clone_from(&signed);
-            }
-            (in_force, digest, since) = (rules, rules.digest(), Some(index));
-            ruling.set_by = signed;
-            ruling.proposed.clear();
         }
-        ruling.under = since.map(|since| followers(entries, since));
+        let is_under = |entry: &Entry| in_force.iter().all(|it| it.is_known_to(entry));
+        if in_force.iter().any(|it| it.followers.is_some()) {
+            ruling.under = Some(entries.iter().map(is_under).collect());
+        }
+        if in_force.len() > 1 {
+            ruling.conflicting = in_force.iter().filter_map(|it| it.set_by.last().copied()).collect();
+        }
+        let first = in_force.swap_remove(0);
+        (ruling.set_by, ruling.board_by) = (first.set_by, first.board_by);
         ruling
     }
 
-    /// Whether an entry follows the last change of the rules.
+    /// Takes in an entry that sets rules, after all before it.
+    fn add<'a>(
+        &mut self,
+        entries: &'a [Entry],
+        (index, rules): (usize, &'a FlightRules),
+        in_force: &mut Vec<InForce<'a>>,
+    ) {
+        let entry = &entries[index];
+        if let [only] = in_force.as_mut_slice()
+            && only.rules == rules
+        {
+            // No change: approvals before it are of the same rules.
+            if only.set_by.is_empty() {
+                (only.set_by, only.board_by) = (vec![index], vec![index]);
+            }
+            return;
+        }
+        let effects: Vec<Effect> = in_force.iter().map(|before| effect(entry, rules, before)).collect();
+        let is_any = |is: fn(&Effect) -> bool| effects.iter().any(is);
+        let mut signed = vec![index];
+        if is_any(|it| matches!(it, Effect::Nothing)) {
+            self.without_effect.insert(index);
+            return;
+        }
+        if is_any(|it| matches!(it, Effect::Weakens)) {
+            // Who agreed to leave other rules than these did not agree to leave these.
+            let knows_all = in_force.iter().all(|before| before.is_known_to(entry));
+            if !in_force[0].set_by.is_empty() && (entry.rules != in_force[0].digest || !knows_all) {
+                self.without_effect.insert(index);
+                return;
+            }
+            let same = |indices: &Vec<usize>| rules_of(entries, indices) == Some(rules);
+            if let Some(known) = self.proposed.iter().position(same) {
+                signed = self.proposed.remove(known);
+                signed.push(index);
+            }
+            let agrees = |before: &InForce<'_>| {
+                let board = &before.rules.board;
+                seat::filled(board, &keys_of(entries, &signed)) >= seat::wanted(board)
+            };
+            let mut weakened = in_force.iter().zip(&effects).filter(|(_, it)| matches!(it, Effect::Weakens));
+            if !weakened.all(|(before, _)| agrees(before)) {
+                self.without_effect.insert(index);
+                self.proposed.push(signed);
+                return;
+            }
+        }
+        let mut effects = effects.into_iter();
+        let mut replaced: Vec<InForce<'a>> =
+            in_force.extract_if(.., |_| !matches!(effects.next(), Some(Effect::Conflicts))).collect();
+        if in_force.len() >= MAX_CONFLICTING {
+            // The board has to agree on rules in any case.
+            self.without_effect.insert(index);
+            in_force.append(&mut replaced);
+            return;
+        }
+        self.without_effect.retain(|index| !signed.contains(index));
+        let board_by = match replaced.as_slice() {
+            [before] if before.rules.board == rules.board && !before.board_by.is_empty() => {
+                before.board_by.clone()
+            }
+            _ => signed.clone(),
+        };
+        let (digest, followers) = (rules.digest(), Some(BTreeSet::from([entry.digest()])));
+        self.ever_in_force.insert(digest.clone());
+        in_force.push(InForce { rules, digest, set_by: signed, board_by, followers });
+        self.proposed.clear();
+    }
+
+    /// Returns whether rules with this digest are in force, or have been.
+    pub(super) fn was_in_force(&self, digest: &str) -> bool {
+        self.ever_in_force.contains(digest)
+    }
+
+    /// Returns whether an entry follows the last change of the rules.
     pub(super) fn is_under(&self, index: usize) -> bool {
         self.under.as_ref().is_none_or(|under| under.get(index) == Some(&true))
     }
@@ -117,7 +234,7 @@ pub struct Proposal<'a> {
 }
 
 impl Proposal<'_> {
-    /// How far the board in force agrees: `1 of 2 approvals of the board in force`.
+    /// Returns how far the board in force agrees: `1 of 2 approvals of the board in force`.
     pub fn consent(&self) -> String {
         format!("{} of {} approvals of the board in force", self.agreed, self.wanted)
     }
@@ -130,14 +247,30 @@ impl Record {
         Some((self.entries().get(*indices.last()?)?, rules_of(self.entries(), indices)?))
     }
 
-    /// Who set the flight rules in force, and who agreed to them; empty while no one has set any.
+    /// Returns who set the flight rules in force, and who agreed to them; empty while no one has set any.
     pub fn rules_by(&self) -> Vec<&Entry> {
         self.at(&self.ruling().set_by)
     }
 
-    /// Who set the board in force, and who agreed to it; empty while no one has set any.
+    /// Returns who set the board in force, and who agreed to it; empty while no one has set any.
     pub fn board_by(&self) -> Vec<&Entry> {
         self.at(&self.ruling().board_by)
+    }
+
+    /// Returns the entries that set different flight rules without knowing of each other, where none of their boards is at
+    /// least as strict as the others: until someone sets rules that follow all of them, nothing is approved.
+    pub fn conflicting_rules(&self) -> Vec<&Entry> {
+        self.at(&self.ruling().conflicting)
+    }
+
+    /// Returns the last entry that sets flight rules, if all such entries are signed with unknown keys: the usual board is in
+    /// force then, which whoever left out the key of the right person may complete.
+    pub fn unknown_rules(&self) -> Option<&Entry> {
+        let sets_rules = |entry: &Entry| matches!(entry.act, Act::Rules { .. });
+        let mut unknown = self
+            .checked()
+            .filter(|(entry, check)| sets_rules(entry) && check.signature == Signature::Unknown);
+        self.ruled().is_none().then(|| unknown.next_back())?.map(|(entry, _)| entry)
     }
 
     /// Changes of the board that wait for the board in force.
@@ -151,7 +284,7 @@ impl Record {
         self.ruling().proposed.iter().filter_map(proposal).collect()
     }
 
-    /// What was found of an entry, in words, with the reason if it has no effect: `valid`, `unknown key: …`.
+    /// Returns what was found of an entry, in words, with the reason if it has no effect: `valid`, `unknown key: …`.
     pub fn words_of(&self, entry: &Entry, check: &Check) -> String {
         match self.without_effect(entry) {
             Some(reason) => format!("{}; {reason}", check.words()),
@@ -159,7 +292,7 @@ impl Record {
         }
     }
 
-    /// Why an entry that counts has no effect, if it sets flight rules to which the board did not agree.
+    /// Returns why an entry that counts has no effect, if it sets flight rules to which the board did not agree.
     pub fn without_effect(&self, entry: &Entry) -> Option<String> {
         let index = self.number(entry.digest()).checked_sub(1)?;
         if !self.ruling().without_effect.contains(&index) {

@@ -6,8 +6,11 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-/// Reads JSON; refuses it if an object has two members with the same name.
-pub(super) fn from_str(text: &str) -> Result<Value, serde_json::Error> {
+/// Reads JSON.
+///
+/// # Errors
+/// The text is not JSON, or one of its objects has two members with the same name.
+pub fn from_str(text: &str) -> Result<Value, serde_json::Error> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = Strict.deserialize(&mut reader)?;
     reader.end()?;
@@ -67,7 +70,7 @@ impl<'de> Visitor<'de> for Strict {
         let mut object = Map::new();
         while let Some(name) = members.next_key::<String>()? {
             if object.contains_key(&name) {
-                return Err(A::Error::custom(format!("the member `{}` is there twice", name.escape_debug())));
+                return Err(A::Error::custom(format!("duplicate member `{}`", name.escape_debug())));
             }
             let member = members.next_value_seed(Self)?;
             object.insert(name, member);
@@ -99,7 +102,7 @@ mod tests {
             ("{\"b\\u0079\": 1, \"by\": 1}", "`by`"),
         ] {
             let why = from_str(text).expect_err(text).to_string();
-            assert!(why.contains(name) && why.contains("twice"), "{why}");
+            assert!(why.contains(name) && why.contains("duplicate"), "{why}");
         }
     }
 }

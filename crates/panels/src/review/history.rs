@@ -15,8 +15,11 @@ use super::verdict::moment;
 use super::{header, row};
 use crate::Context;
 
-/// Entries that are listed, the last ones; a file has all.
+/// The last entries are all listed, and earlier ones if they do not count; a file has all.
 const MAX_ENTRIES: usize = 60;
+
+/// Entries that are listed, at most.
+const MAX_LISTED: usize = 500;
 
 /// Shows the history, the last entry first.
 pub(super) fn show(
@@ -53,7 +56,12 @@ pub(super) fn show(
         row::muted(ui, context, &format!("{doubtful} {one} not count. See the reason next to each."));
     }
     let checked: Vec<(&Entry, &Check)> = record.checked().collect();
-    for (index, &(entry, check)) in checked.iter().enumerate().rev().take(MAX_ENTRIES) {
+    // An entry that does not count is not pushed out of sight by others.
+    let is_listed = |(index, (_, check)): &(usize, &(&Entry, &Check))| {
+        index + MAX_ENTRIES >= checked.len() || !check.counts()
+    };
+    let listed = checked.iter().enumerate().rev().filter(is_listed);
+    for (index, &(entry, check)) in listed.take(MAX_LISTED) {
         let taken_back = withdrawn.get(entry.digest()).map(|by| format!("withdrawn by {}", who(by)));
         let of = entry.act.of().map(|of| format!(" {}", record.number(of))).unwrap_or_default();
         show_entry(ui, context, (entry, check), &format!("{}  ", index + 1), &of, taken_back);

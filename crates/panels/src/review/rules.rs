@@ -57,7 +57,8 @@ impl Rules {
             ui.add_space(space::S);
             let problem = rules.problem();
             ui.horizontal_wrapped(|ui| {
-                let is_ready = rules != present && problem.is_none();
+                let is_new = rules != present || !record.conflicting_rules().is_empty();
+                let is_ready = is_new && problem.is_none();
                 if ui.add_enabled(is_ready, Button::new("Apply rules")).clicked() {
                     let rules = Box::new(rules.clone());
                     commands.send(Command::Review(ReviewCommand::SetRules(rules)));
@@ -197,7 +198,7 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
     }
 }
 
-/// What is wrong with a rule in the open mission.
+/// Returns what is wrong with a rule in the open mission.
 fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
     let snapshot = context.snapshot.filter(|_| !rule.trim().is_empty())?;
     let network = snapshot.network.as_deref()?;

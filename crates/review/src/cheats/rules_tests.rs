@@ -1,5 +1,7 @@
 //! Boards that someone weakens, and flight rules that go away and come back.
 
+use std::collections::BTreeSet;
+
 use super::*;
 
 /// Two people set flight rules at the same time, and each history has both.
@@ -125,4 +127,118 @@ fn who_agreed_to_leave_other_rules_did_not_agree_to_leave_these() {
     assert_eq!(apart.rules(), &of(3));
     board.say("Grace", Act::Rules { rules: of(1) });
     assert_eq!(board.record.rules(), &of(1));
+}
+
+/// Everyone chooses the date of an entry, and what it follows.
+#[test]
+fn rules_that_are_dated_back_do_not_take_a_board() {
+    let of = |seat: Seat| FlightRules { board: vec![seat], ..FlightRules::default() };
+    let of_ada = || Seat { people: vec![key("Ada").public()], ..Seat::new("Reviewer", 1) };
+    for rules_before in [false, true] {
+        let mut board = Board::new(LASTING);
+        if rules_before {
+            for by in ["Chair", "Grace"] {
+                board.say(by, Act::Rules { rules: of(Seat::new("Reviewer", 1)) });
+            }
+        } else {
+            // The first entry is a comment, and no one has set rules.
+            let record = judged(Record::new("enroute"));
+            board.record = record;
+            board.record.seed([7; 32]);
+            let comment =
+                board.say("Grace", Act::Comment { about: None, to: None, text: "Long.".to_owned() });
+            board.say("Grace", Act::Resolve { of: comment, text: "It is meant so.".to_owned() });
+        }
+        let former: Vec<String> = board.record.heads().map(str::to_owned).collect();
+        let agreed = board.record.rules().digest();
+        let early = board.said("Ada");
+        board.say("Chair", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
+        assert_eq!(board.record.rules(), &of(Seat::new("Reviewer", 2)));
+        let said = Said { former, rules: agreed, act: Act::Rules { rules: of(of_ada()) }, ..early };
+        board.record = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+        let names: BTreeSet<&str> =
+            board.record.conflicting_rules().iter().map(|entry| entry.by.as_str()).collect();
+        assert_eq!(names, BTreeSet::from(["Ada", "Chair"]), "{rules_before}");
+        // Neither Ada alone nor both complete a board, under either rules.
+        for by in ["Ada", "Grace"] {
+            board.approve(by);
+            assert!(!board.status().is_approved(), "{by}");
+            assert!(!board.status_under(&of(of_ada())).is_approved(), "{by}");
+            assert!(!board.status_under(&of(Seat::new("Reviewer", 2))).is_approved(), "{by}");
+        }
+        // The board of two is in force again once Ada has agreed to leave her own.
+        board.say("Chair", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
+        assert_eq!(board.record.conflicting_rules().len(), 2);
+        board.say("Ada", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
+        assert!(board.record.conflicting_rules().is_empty());
+        assert_eq!(board.record.rules(), &of(Seat::new("Reviewer", 2)));
+        board.review.judge(&of(Seat::new("Reviewer", 2)), None);
+        for (by, is_last) in [("Ada", false), ("Grace", true)] {
+            board.approve(by);
+            assert_eq!(board.status().is_approved(), is_last, "{by}");
+        }
+    }
+}
+
+#[test]
+fn of_two_boards_that_were_set_apart_the_stricter_one_is_in_force() {
+    for is_strict_first in [false, true] {
+        let mut board = Board::new(LASTING);
+        let of =
+            |count: u32| FlightRules { board: vec![Seat::new("Reviewer", count)], ..FlightRules::default() };
+        let mut other = board.record.clone();
+        let counts = if is_strict_first { [4, 3] } else { [3, 4] };
+        board.say("Ada", Act::Rules { rules: of(counts[0]) });
+        let who = board.who("Grace");
+        other.add(who, Act::Rules { rules: of(counts[1]) }, &key("Grace"));
+        board.record.merge(other);
+        assert_eq!(board.record.rules(), &of(4), "{is_strict_first}");
+        assert!(board.record.conflicting_rules().is_empty());
+    }
+}
+
+#[test]
+fn rules_that_only_unknown_keys_have_set_block_an_approval() {
+    let mut board = Board::new(LASTING);
+    board.record = judged(Record::new("enroute"));
+    board.record.seed([7; 32]);
+    let two = FlightRules { board: vec![Seat::new("Reviewer", 2)], ..FlightRules::default() };
+    board.say("Ada", Act::Comment { about: None, to: None, text: "Fine.".to_owned() });
+    let comment = board.record.entries()[0].digest().to_owned();
+    board.say("Ada", Act::Resolve { of: comment, text: "Done.".to_owned() });
+    board.say_with("Eve", Act::Rules { rules: two }, &key("Eve"));
+    board.review.judge(&FlightRules::default(), None);
+    board.approve("Ada");
+    let standing = standing(&board.record, &Present::of_review(&board.review));
+    assert!(!standing.status.is_approved());
+    let told = standing.blockers().join(", ");
+    assert!(told.contains("the flight rules are set by Eve, whose key is unknown"), "{told}");
+}
+
+#[test]
+fn whoever_approves_first_does_not_hide_what_changed() {
+    let mut board = approved();
+    let complete = board.review.content_hash.clone();
+    board.source = format!("{} ", board.source);
+    board.review = reviewed(&board.source);
+    let rules = board.record.rules().clone();
+    board.review.judge(&rules, None);
+    assert_ne!(board.review.content_hash, complete);
+    board.approve("Ada");
+    let (last, _) = board.record.last_approval().expect("an approval");
+    assert_eq!(last.content_hash, complete, "the board has not approved what Ada has");
+    board.approve("Grace");
+    let (last, _) = board.record.last_approval().expect("an approval");
+    assert_eq!(last.content_hash, board.review.content_hash);
+}
+
+#[test]
+fn a_reason_has_letters_or_digits() {
+    let mut board = Board::new(LASTING);
+    let comment = board.say("Ada", Act::Comment { about: None, to: None, text: "Why?".to_owned() });
+    for (text, counts) in [(" ", false), ("…", false), (".-!", false), ("FR 7", true)] {
+        board.say("Ada", Act::Resolve { of: comment.clone(), text: text.to_owned() });
+        let (_, problem) = last_check(&board.record);
+        assert_eq!(problem.is_empty(), counts, "{text:?}: {problem}");
+    }
 }

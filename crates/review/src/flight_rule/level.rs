@@ -39,7 +39,7 @@ impl Wanted {
         Self { resource, is_above, amount, may_equal, is_instant }
     }
 
-    /// How the resource compares with the amount.
+    /// Returns how the resource compares with the amount.
     pub(super) const fn order(&self) -> Order {
         match (self.is_above, self.may_equal) {
             (false, false) => Order::Below,
@@ -53,7 +53,7 @@ impl Wanted {
         Self { is_above: !self.is_above, may_equal: !self.may_equal, ..self }
     }
 
-    /// Whether a level is like this.
+    /// Returns whether a level is like this.
     pub(super) fn is_met_by(&self, level: Rational) -> bool {
         (self.may_equal && level == self.amount)
             || if self.is_above { level > self.amount } else { level < self.amount }
@@ -81,7 +81,7 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// What a use does to a level.
+    /// Returns what a use does to a level.
     pub(super) fn of_use(used: &Use) -> Vec<Self> {
         if used.amount.is_zero() {
             return Vec::new();
@@ -104,7 +104,7 @@ impl Change {
         self.more[is_above as usize]
     }
 
-    /// Whether it makes the level higher.
+    /// Returns whether it makes the level higher.
     pub(super) fn is_gain(&self) -> bool {
         self.more[1].is_positive()
     }
@@ -115,7 +115,7 @@ impl Change {
         if more.is_negative() { more.checked_neg() } else { Some(more) }
     }
 
-    /// Whether it can have come at an instant of `case`, and whether it can still be to come.
+    /// Returns whether it can have come at an instant of `case`, and whether it can still be to come.
     fn can_come_or_wait(&self, times: &mut Times, case: &Case, is_instant: bool) -> (bool, bool) {
         let past = self.has_come(is_instant);
         let can_come = case.future.iter().all(|&future| times.fits(past, future));
@@ -189,17 +189,17 @@ impl Resource {
     }
 
     /// The greatest or least level once these changes have come.
-    fn level(&self, has_come: &[bool], is_greatest: bool) -> Option<Rational> {
+    fn level(&self, has_come: &[bool], is_max: bool) -> Option<Rational> {
         let counts = |&(index, change): &(usize, &Change)| {
             has_come[index] && (!change.is_release || has_come[index - 1])
         };
         let mut come = self.changes.iter().enumerate().filter(counts);
-        come.try_fold(self.first, |level, (_, change)| level.checked_add(change.toward(is_greatest)))
+        come.try_fold(self.first, |level, (_, change)| level.checked_add(change.toward(is_max)))
     }
 
-    /// Whether a level once these changes have come is as all of these want it.
+    /// Returns whether a level once these changes have come is as all of these want it.
     pub(super) fn meets(&self, has_come: &[bool], all: &[Wanted]) -> bool {
-        let ends = [false, true].map(|is_greatest| self.level(has_come, is_greatest));
+        let ends = [false, true].map(|is_max| self.level(has_come, is_max));
         let [Some(least), Some(greatest)] = ends else { return false };
         let mut levels: Vec<Rational> = vec![least, greatest];
         levels.extend(all.iter().map(|it| it.amount).filter(|it| (least..=greatest).contains(it)));
@@ -222,7 +222,8 @@ struct Flow {
 }
 
 impl Flow {
-    /// Which gains are worth their losses, and these losses: passes on as much as possible, along shortest paths.
+    /// Returns which gains are worth their losses, and these losses: passes on as much as possible, along shortest
+    /// paths.
     fn best(mut self) -> Option<(Vec<bool>, Vec<bool>)> {
         loop {
             let (gains, losses) = (self.gives.len(), self.takes.len());

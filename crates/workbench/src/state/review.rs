@@ -168,7 +168,7 @@ impl ReviewState {
         self.plan.as_ref().map(|(_, hash)| hash.as_str())
     }
 
-    /// Whether it matters which plan the present content has.
+    /// Returns whether it matters which plan the present content has.
     fn asks_for_plan(&self) -> bool {
         let Some(hash) = self.hash() else { return false };
         let mut entries = self.record.entries().iter();
@@ -176,27 +176,27 @@ impl ReviewState {
             || entries.any(|entry| matches!(entry.act, Act::Approve { .. }) && entry.content_hash == hash)
     }
 
-    /// Whether a review is being made.
+    /// Returns whether a review is being made.
     pub fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
-    /// Whether the present content has never been asked to be reviewed.
+    /// Returns whether the present content has never been asked to be reviewed.
     pub fn is_unasked(&self) -> bool {
         self.hash().is_some() && self.asked.is_none()
     }
 
-    /// What the board has said and approved.
+    /// Returns what the board has said and approved.
     pub fn record(&self) -> &Record {
         &self.record
     }
 
-    /// What was found instead of a record, and is left where it is.
+    /// Returns what was found instead of a record, and is left where it is.
     pub fn aside(&self) -> Option<&Aside> {
         self.aside.as_ref()
     }
 
-    /// Why it is not kept beyond this run, if it could not be.
+    /// Returns why it is not kept beyond this run, if it could not be.
     pub fn unkept(&self) -> Option<&str> {
         self.unkept.as_deref()
     }
@@ -342,7 +342,7 @@ impl Reviewing<'_> {
             self.window.failed(format!("Invalid flight rules: {problem}"));
             return;
         }
-        if self.review.record.rules() == rules {
+        if self.review.record.rules() == rules && self.review.record.conflicting_rules().is_empty() {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
@@ -399,7 +399,7 @@ impl Reviewing<'_> {
                 let mut parts = vec![format!("Added {count} new {entries} from {name}")];
                 let doubtful = self.review.record.checked().filter(|(_, check)| !check.counts()).count();
                 if doubtful > 0 {
-                    parts.push(format!("{doubtful} of all entries do not count: see History"));
+                    parts.push(format!("Entries that don't count: {doubtful} (see History)"));
                 }
                 if left_out > 0 {
                     parts.push(
@@ -418,7 +418,7 @@ impl Reviewing<'_> {
         }
     }
 
-    /// Whether a record from elsewhere is the history that is here, or can take its place.
+    /// Returns whether a record from elsewhere is the history that is here, or can take its place.
     fn can_join(&self, record: &Record) -> bool {
         let mut record = record.clone();
         record.judge(&self.keys.ring().trust(), &self.utc_now());
@@ -451,8 +451,8 @@ impl Reviewing<'_> {
         }
     }
 
-    /// Whether a record is about the open mission: by its name, or, where that was changed, by the present content or by
-    /// what both histories have.
+    /// Returns whether a record is about the open mission: by its name, or, where that was changed, by the present
+    /// content or by what both histories have.
     fn is_of_open_mission(&self, record: &Record) -> bool {
         let hash = self.review.hash();
         let is_present = |content: &str| hash.is_some_and(|hash| hash == content);
@@ -513,7 +513,7 @@ impl Reviewing<'_> {
             self.merge_foreign(record);
         } else {
             self.window
-                .failed("The mission came with another history of its review. No entries added.".to_owned());
+                .failed("The mission file has a different review history. No entries added.".to_owned());
         }
     }
 
