@@ -1,5 +1,6 @@
 //! The dialogs over the panels, as data.
 
+use review::keys::Person;
 use smol_str::SmolStr;
 
 use crate::library::MissionId;
@@ -60,6 +61,13 @@ pub enum Dialog {
         /// Whether the file at the caret gets it; otherwise a new one does.
         renames: bool,
     },
+    /// Asks whether to trust the keys of a file.
+    TrustKeys {
+        /// The name of the file.
+        file: String,
+        /// Those that are not trusted yet, and those whose secret keys are new.
+        people: Vec<Person>,
+    },
     Settings,
     /// Lists all keys.
     Keys,
@@ -80,6 +88,7 @@ impl Dialog {
             Self::MissionName { .. } => "mission-name",
             Self::VersionName { .. } => "version-name",
             Self::FileName { .. } => "file-name",
+            Self::TrustKeys { .. } => "trust-keys",
             Self::Settings => "settings",
             Self::Keys => "keys",
             Self::About => "about",
@@ -99,6 +108,7 @@ impl Dialog {
             Self::VersionName { .. } => "Version name",
             Self::FileName { renames: true, .. } => "Rename file",
             Self::FileName { renames: false, .. } => "Add file",
+            Self::TrustKeys { .. } => "Trust keys",
             Self::Settings => "Settings",
             Self::Keys => "Keyboard shortcuts",
             Self::About => "About Enroute",

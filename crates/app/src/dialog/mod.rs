@@ -10,6 +10,7 @@ mod name;
 mod palette;
 mod rename;
 mod settings;
+mod trust;
 
 use egui::{Align2, Area, Frame, Id, Order};
 use panels::Context;
@@ -63,6 +64,7 @@ fn show_content(ui: &mut egui::Ui, context: &Context<'_>, dialog: &Dialog, comma
             let named = if *renames { name::Named::File } else { name::Named::NewFile };
             name::show(ui, named, name, commands);
         }
+        Dialog::TrustKeys { file, people } => trust::show(ui, context, file, people, commands),
         Dialog::Settings => settings::show(ui, context, commands),
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),

@@ -2,17 +2,17 @@
 
 use interchange::is_network_file;
 use link::Response;
-use review::keys::KeyRing;
+use review::keys::{KeyRing, Person};
 use review::rules::RULES_FORMAT;
 use text_editing::TextCommand;
 
 use crate::command::Command;
+use crate::dialog::Dialog;
 use crate::effect::Effect;
 use crate::host::{FileKind, HostEvent};
 use crate::library::Mission;
 use crate::limits::too_large;
 use crate::state::AppState;
-use crate::state::keys::KeyChange;
 
 impl AppState {
     /// Takes in something that happened outside, and computes what depends on it.
@@ -163,7 +163,7 @@ impl AppState {
             self.open_mission_file(name, text.into_bytes());
         } else if document["format"].as_str().is_some_and(|format| format.starts_with("enroute-keys/")) {
             match KeyRing::from_json(&text) {
-                Ok(ring) => self.window.ask(Effect::ChangeKeys(KeyChange::Add(ring.people().to_vec()))),
+                Ok(ring) => self.ask_for_trust(name, ring.people()),
                 Err(error) => self.window.failed(format!("{name}: {error}")),
             }
         } else if document["format"] == RULES_FORMAT {
@@ -177,6 +177,22 @@ impl AppState {
             &mut self.window,
         ) {
             self.reviewing().import_record(name, &text);
+        }
+    }
+
+    /// Asks whether to trust people of a file: anyone may have written it.
+    fn ask_for_trust(&mut self, file: &str, people: &[Person]) {
+        let is_known = |person: &&Person| {
+            let known = self.keys.ring().people().iter().find(|known| known.key == person.key);
+            known.is_some_and(|known| {
+                known.name == person.name && (person.secret.is_none() || known.secret.is_some())
+            })
+        };
+        let new: Vec<Person> = people.iter().filter(|person| !is_known(person)).cloned().collect();
+        if new.is_empty() {
+            self.window.info(format!("All keys in {file} are trusted already"));
+        } else {
+            self.window.dialog = Some(Dialog::TrustKeys { file: file.to_owned(), people: new });
         }
     }
 }

@@ -46,13 +46,13 @@ impl AppState {
         }
     }
 
-    /// What the stop says, with what is computed filled in and the first occurrence of each term marked.
+    /// Returns what the stop says, with what is computed filled in and the first occurrence of each term marked.
     pub fn lesson_prose(&self) -> Vec<Block> {
         let Some(stop) = self.lesson.stop() else { return Vec::new() };
         Glossary::get().marked(&filled(&stop.prose, &mut |text| self.lesson_value(text)))
     }
 
-    /// What represents `{{text}}` in prose now.
+    /// Returns what represents `{{text}}` in prose now.
     pub fn lesson_value(&self, text: &str) -> String {
         let value =
             Expression::read(text).ok().and_then(|expression| expression.value(&Description::of(self)));
@@ -66,12 +66,12 @@ impl AppState {
         blocks.iter().map(Block::plain).collect::<Vec<_>>().join(" ")
     }
 
-    /// Whether a stop of the course was answered rightly, in this run or an earlier one.
+    /// Returns whether a stop of the course was answered rightly, in this run or an earlier one.
     pub fn is_learned(&self, lesson: &str, stop: usize) -> bool {
         self.settings.learned.contains(&learned_key(lesson, stop))
     }
 
-    /// What is remembered: how planning and the text are set while no lesson sets them.
+    /// Returns what is remembered: how planning and the text are set while no lesson sets them.
     pub(crate) fn settings_to_keep(&self) -> Settings {
         let plan = self.lesson.plan_settings.as_ref().unwrap_or(&self.settings.plan);
         let mut kept = Settings { plan: plan.clone(), ..self.settings.clone() };
@@ -306,7 +306,7 @@ impl AppState {
 
     /// Runs a command by its name.
     fn do_named(&mut self, id: &str, arguments: &serde_json::Value) {
-        match registry::from_json(self, id, arguments) {
+        match registry::command_of_lesson(self, id, arguments) {
             Ok(command) => self.do_lesson_command(command),
             Err(error) => self.window.failed(format!("{id}: {error}")),
         }

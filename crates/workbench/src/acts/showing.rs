@@ -59,7 +59,7 @@ impl AppState {
         }
     }
 
-    /// Whether everything that a stop can show has been worked out.
+    /// Returns whether everything that a stop can show has been worked out.
     fn is_ready_for_stop(&self) -> bool {
         let Some(latest) = self.snapshots.latest() else { return false };
         if latest.revision != self.document.revision() || latest.stage != snapshot::Stage::Complete {
@@ -104,7 +104,7 @@ impl AppState {
             self.playback.seek(time);
         }
         for (line, id, arguments) in &show.commands {
-            match crate::registry::from_json(self, id, arguments) {
+            match crate::registry::command_of_lesson(self, id, arguments) {
                 Ok(command) => self.do_lesson_command(command),
                 Err(error) => self.tell_lecturer(*line, &format!("{id}: {error}")),
             }

@@ -25,7 +25,7 @@ use crate::command::Command;
 use crate::host::RemoteError;
 use crate::state::AppState;
 
-pub use lesson::read_lesson;
+pub use lesson::{command_of_lesson, read_lesson};
 pub use spec::{Availability, Build, CommandSpec, Group, Scope};
 
 use self::synonyms::score_of_synonyms;
@@ -81,14 +81,14 @@ pub fn matching(query: &str) -> Vec<&'static CommandSpec> {
     found.into_iter().map(|(_, _, spec)| spec).collect()
 }
 
-/// How well an entry of the palette is found: by its title, by its group and title, or by another word for the command or
-/// panel that is called `id`.
+/// Returns how well an entry of the palette is found: by its title, by its group and title, or by another word for the
+/// command or panel that is called `id`.
 pub fn score_of_entry(id: &str, [group, title]: [&str; 2], query: &str) -> Option<i32> {
     let with_group = score(&format!("{group} {title}"), query).map(|score| score - 1);
     score(title, query).max(with_group).max(score_of_synonyms(id, query))
 }
 
-/// How well the letters of `query` are found in `text`, in order and ignoring case; `None` if they are not.
+/// Returns how well the letters of `query` are found in `text`, in order and ignoring case; `None` if they are not.
 pub fn score(text: &str, query: &str) -> Option<i32> {
     let text: Vec<char> = text.to_lowercase().chars().collect();
     let wanted: Vec<char> = query.to_lowercase().chars().filter(|c| !c.is_whitespace()).collect();

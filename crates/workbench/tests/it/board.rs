@@ -5,10 +5,13 @@ use std::rc::Rc;
 use review::Record;
 use serde_json::{Value, json};
 use test_support::App;
+use workbench::Dialog;
 use workbench::command::Command;
 use workbench::host::FileKind;
 use workbench::host_io::Remote as _;
+use workbench::state::keys::KeyChange;
 use workbench::state::review::ReviewCommand;
+use workbench::state::window::WindowCommand;
 
 /// The open mission, reviewed, before a board of two roles.
 fn before_the_board() -> App {
@@ -38,7 +41,7 @@ fn refused(app: &mut App, command: &str, arguments: &Value) -> String {
     answer.expect_err("it is refused").to_string()
 }
 
-/// What the last act was, and by whom.
+/// Returns what the last act was, and by whom.
 fn last_act(app: &App) -> (String, String) {
     let history = app.json()["review"]["history"].clone();
     let last = history.as_array().and_then(|all| all.last().cloned()).expect("an entry");
@@ -297,7 +300,7 @@ fn open_json(app: &mut App, text: &str) {
     app.settle();
 }
 
-/// What the last message said.
+/// Returns what the last message said.
 fn last_toast(app: &App) -> String {
     app.session.state().window.toasts.shown().last().map(|toast| toast.text.clone()).unwrap_or_default()
 }
@@ -328,6 +331,34 @@ fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
 /// Trusts whom `author` trusts, by a file of public keys.
 fn share_keys(author: &App, app: &mut App) {
     open_json(app, &author.session.state().keys.ring().to_json(false));
+    trust_file(app);
+}
+
+/// Agrees to trust the keys of the file that was opened.
+fn trust_file(app: &mut App) {
+    let asked = app.session.state().window.dialog.clone();
+    let Some(Dialog::TrustKeys { people, .. }) = asked else { panic!("nothing is asked: {asked:?}") };
+    app.run(Command::Window(WindowCommand::CloseDialog));
+    app.run(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Add(people))));
+}
+
+#[test]
+fn keys_of_a_file_are_trusted_only_after_a_question() {
+    let author = before_the_board();
+    let people = author.json()["review"]["people"].as_array().map_or(0, Vec::len);
+    let mut app = test_support::start();
+    let file = author.session.state().keys.ring().to_json(true);
+    open_json(&mut app, &file);
+    assert_eq!(app.json()["dialog"], "trust-keys");
+    assert_eq!(app.json()["review"]["people"], json!([]));
+    app.run(Command::Window(WindowCommand::CloseDialog));
+    assert_eq!(app.json()["review"]["people"], json!([]), "who cancels trusts no one");
+    open_json(&mut app, &file);
+    trust_file(&mut app);
+    assert_eq!(app.json()["review"]["people"].as_array().map(Vec::len), Some(people));
+    open_json(&mut app, &file);
+    assert_eq!(app.json()["dialog"], Value::Null);
+    assert!(last_toast(&app).contains("trusted already"), "{}", last_toast(&app));
 }
 
 #[test]
@@ -535,7 +566,7 @@ fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
     assert!(app.session.state().review.rule_tracks().is_empty());
 }
 
-/// What the history says of the last entry: its signature, whether it counts, and why not.
+/// Returns what the history says of the last entry: its signature, whether it counts, and why not.
 fn last_entry(app: &App) -> (Value, Value, String) {
     let history = app.json()["review"]["history"].clone();
     let last = history.as_array().and_then(|all| all.last().cloned()).expect("an entry");
@@ -571,6 +602,7 @@ fn names_that_look_alike_get_no_keys_and_nobody_signs_without_one() {
     let file = again.world.saved_text();
     let mut elsewhere = test_support::start();
     open_json(&mut elsewhere, &file);
+    trust_file(&mut elsewhere);
     assert_eq!(elsewhere.json()["review"]["people"], people);
     let key = people[0]["key"].clone();
     elsewhere.dispatch("review.removeKey", &json!({ "key": key }));
@@ -613,7 +645,7 @@ fn signatures_of_an_imported_history_are_shown_and_nothing_counts_until_it_is_va
     let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     open_json(&mut app, &text);
-    assert!(last_toast(&app).contains("do not count"), "{}", last_toast(&app));
+    assert!(last_toast(&app).contains("don't count"), "{}", last_toast(&app));
     assert_eq!(last_entry(&app), (json!("unknown"), json!(false), String::new()));
     assert_eq!(
         (status(&app), &app.json()["review"]["rules"]["board"][0]["role"]),

@@ -6,7 +6,7 @@ use xtask::browser::Graphics;
 
 use crate::opened::Opened;
 
-/// Why a command is refused; fails where it is not.
+/// Returns why a command is refused; fails where it is not.
 fn refused(page: &Opened, command: &str, arguments: &Value) -> Result<String> {
     let why = page.tab.evaluate(&format!(
         "(() => {{ try {{ enroute.dispatch({}, {arguments}); }} catch (error) {{ return String(error.message); }} }})()",
@@ -142,6 +142,15 @@ fn nobody_weakens_a_board_alone() -> Result<()> {
     Ok(())
 }
 
+/// Drops a file of keys, and agrees to trust them.
+fn trust_keys(page: &Opened, keys: &str) -> Result<()> {
+    page.tab.drop_file("board.keys.json", keys.as_bytes())?;
+    page.wait_for("state.dialog === 'trust-keys'")?;
+    page.wait_for("state.review.people.length === 0")?;
+    page.tab.click_widget("button", "Trust")?;
+    Ok(())
+}
+
 #[test]
 fn a_forged_history_is_marked_and_counts_for_nothing() -> Result<()> {
     let (page, review, keys) = approved_and_saved()?;
@@ -157,9 +166,17 @@ fn a_forged_history_is_marked_and_counts_for_nothing() -> Result<()> {
     other.wait_for("state.review.history.every((entry) => !entry.counts)")?;
     other.wait_for("state.review.history.at(-1).signature === 'broken'")?;
     other.wait_for("state.review.planStatus === 'draft'")?;
-    other.tab.drop_file("board.keys.json", keys.as_bytes())?;
+    trust_keys(&other, &keys)?;
     other.wait_for("state.review.people.length === 2 && state.review.history[0].counts")?;
     other.wait_for("state.review.planStatus === 'in-review'")?;
+    // The panel shows it, not only the state.
+    other.tab.resize(1280, 1600)?;
+    dispatch(&other, "view.panel", &json!({ "name": "review" }))?;
+    other.tab.wait_until(
+        "[...document.querySelectorAll('[id^=widget-]')].some((it) => it.textContent.includes('broken'))",
+    )?;
+    other.keep_picture("forged-history")?;
+    other.tab.resize(800, 500)?;
     // What was signed by no one else's hand completes the board.
     other.tab.drop_file("board.review.json", review.as_bytes())?;
     other.wait_for("state.review.planStatus === 'approved'")?;
@@ -191,7 +208,7 @@ fn a_history_of_another_mission_counts_for_nothing() -> Result<()> {
     other.settle()?;
     dispatch(&other, "view.workspace", &json!({ "name": "review" }))?;
     other.wait_for("state.review.hash !== null && !state.review.stale")?;
-    other.tab.drop_file("board.keys.json", keys.as_bytes())?;
+    trust_keys(&other, &keys)?;
     other.wait_for("state.review.people.length === 2")?;
     other.tab.drop_file("board.review.json", review.as_bytes())?;
     other.wait_for(&says("is a review of “enroute”"))?;

@@ -2,8 +2,6 @@
 //!
 //! With `ENROUTE_RECORDING` naming a folder, a picture of the page after each press is kept there.
 
-use std::{env, fs, path::PathBuf};
-
 use anyhow::{Result, bail};
 use xtask::browser::{Key, Modifiers};
 
@@ -18,7 +16,6 @@ scenario Survey = { Drive(Ridge) };
 
 struct Recording {
     page: Opened,
-    folder: Option<PathBuf>,
     count: u32,
 }
 
@@ -27,17 +24,12 @@ impl Recording {
         let page = Opened::with_fragment("")?;
         page.tab.evaluate(&format!("enroute.setSource({})", serde_json::to_string(source)?))?;
         page.settle()?;
-        Ok(Self { page, folder: env::var_os("ENROUTE_RECORDING").map(PathBuf::from), count: 0 })
+        Ok(Self { page, count: 0 })
     }
 
     fn keep(&mut self, name: &str) -> Result<()> {
-        self.page.tab.next_frame()?;
         self.count += 1;
-        if let Some(folder) = &self.folder {
-            fs::create_dir_all(folder)?;
-            fs::write(folder.join(format!("{name}-{:02}.png", self.count)), self.page.tab.screenshot_png()?)?;
-        }
-        Ok(())
+        self.page.keep_picture(&format!("{name}-{:02}", self.count))
     }
 
     fn press(&mut self, key: Key, modifiers: Modifiers) -> Result<()> {

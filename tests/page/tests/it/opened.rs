@@ -1,7 +1,7 @@
 //! The page, opened and ready.
 
 use std::{
-    fs,
+    env, fs,
     path::{Path, PathBuf},
     sync::{
         Arc, LazyLock,
@@ -148,6 +148,15 @@ impl Opened {
             self.tab.press(Key::Backspace, Modifiers::NONE)?;
         }
         self.type_text(typed)
+    }
+
+    /// Keeps a picture of the page in the folder that `ENROUTE_RECORDING` names, if it names one.
+    pub(crate) fn keep_picture(&self, name: &str) -> Result<()> {
+        self.tab.next_frame()?;
+        let Some(folder) = env::var_os("ENROUTE_RECORDING").map(PathBuf::from) else { return Ok(()) };
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join(format!("{name}.png")), self.tab.screenshot_png()?)?;
+        Ok(())
     }
 
     /// The page as pixels, once what was done is drawn.

@@ -1,0 +1,65 @@
+//! Asks whether to trust the keys of a file.
+
+use egui::{RichText, ScrollArea, Ui};
+use panels::Context;
+use review::keys::Person;
+use theme::space;
+use workbench::command::{Command, CommandSender};
+use workbench::state::keys::KeyChange;
+use workbench::state::review::ReviewCommand;
+use workbench::state::window::WindowCommand;
+
+/// The list of keys is at most this high.
+const MAX_LIST_POINTS: f32 = 240.0;
+
+/// Shows the question.
+pub(super) fn show(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    file: &str,
+    people: &[Person],
+    commands: &mut CommandSender,
+) {
+    ui.set_width(420.0);
+    let question = match people {
+        [only] => format!("Trust the key of {} from {file}?", only.name),
+        people => format!("Trust {} keys from {file}?", people.len()),
+    };
+    ui.label(question);
+    ui.label(
+        RichText::new("Approvals of these people will count. Compare each fingerprint with its owner first.")
+            .color(context.tokens.text_muted),
+    );
+    ui.add_space(space::S);
+    ScrollArea::vertical().max_height(MAX_LIST_POINTS).show(ui, |ui| {
+        for person in people {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(&person.name);
+                ui.label(RichText::new(person.key.fingerprint()).monospace())
+                    .on_hover_text(person.key.as_str());
+                if person.secret.is_some() {
+                    let words = "with its secret key: you will sign with it";
+                    ui.label(RichText::new(words).color(context.tokens.warning));
+                }
+            });
+        }
+    });
+    ui.add_space(space::S);
+    let mut is_trusted = false;
+    ui.horizontal(|ui| {
+        let trust = ui.button("Trust");
+        is_trusted = trust.clicked();
+        let cancel = ui.button("Cancel");
+        // Whoever types on while the file arrives trusts no one.
+        if !trust.has_focus() && !cancel.has_focus() {
+            cancel.request_focus();
+        }
+        if cancel.clicked() {
+            commands.send(Command::Window(WindowCommand::CloseDialog));
+        }
+    });
+    if is_trusted {
+        commands.send(Command::Window(WindowCommand::CloseDialog));
+        commands.send(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Add(people.to_vec()))));
+    }
+}
