@@ -93,7 +93,7 @@ pub fn escaped(json: &str) -> String {
     text
 }
 
-/// Whether a terminal takes a character for a command or for a change of direction.
+/// Returns whether a terminal takes a character for a command or for a change of direction.
 pub fn commands_terminal(letter: char) -> bool {
     letter.is_control() || markup::sets_direction(letter)
 }
@@ -166,6 +166,8 @@ pub const E_CALL: &str = "E-CALL";
 pub const E_INPUT: &str = "E-INPUT";
 /// The code of a time limit that was reached.
 pub const E_TIME: &str = "E-TIME";
+/// The code of another limit that was reached.
+pub const E_LIMIT: &str = "E-LIMIT";
 
 /// Answers a call that has no other answer: on standard error, or for programs as the diagnostic of a document of this kind.
 pub fn print_failure((kind, format): (&str, Format), code: &str, message: &str) {
@@ -177,7 +179,8 @@ pub fn print_failure((kind, format): (&str, Format), code: &str, message: &str) 
     }
 }
 
-fn failure(code: &str, message: &str) -> Problem {
+/// Returns a diagnostic about no place in a text.
+pub fn failure(code: &str, message: &str) -> Problem {
     Problem {
         code: code.into(),
         severity: Severity::Error,
@@ -193,7 +196,7 @@ fn failure(code: &str, message: &str) -> Problem {
     }
 }
 
-/// Whether any of `problems` is an error.
+/// Returns whether any of `problems` is an error.
 pub fn any_error(problems: &[Problem]) -> bool {
     problems.iter().any(|problem| problem.severity == Severity::Error)
 }

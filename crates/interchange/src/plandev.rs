@@ -62,7 +62,7 @@ pub enum PlanDevError {
     Network(#[from] PlanSchemaError),
 }
 
-/// Whether a file is a plan of `PlanDev` rather than another document in JSON.
+/// Returns whether a file is a plan of `PlanDev` rather than another document in JSON.
 pub fn is_plan(file: &Value) -> bool {
     file.get("activities").is_some_and(Value::is_array)
         && ["start_time", "model_id", "simulation_arguments"].iter().any(|key| file.get(key).is_some())
@@ -101,10 +101,12 @@ pub fn read(file: &Value) -> Result<Document, PlanDevError> {
 /// What names the type of a directive that has a name of its own, among its arguments.
 pub const DIRECTIVE_TYPE: &str = "directive_type";
 
-/// Whether a directive is named after its type, as plans that are written for `PlanDev` do: `Drive`, or `Drive#2`.
-fn is_numbered(name: &str, kind: &str) -> bool {
-    let number = name.strip_prefix(kind).map(|rest| rest.strip_prefix('#').unwrap_or(rest));
-    number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+/// Returns whether a directive has no name of its own: only that of its type, or `Drive#2` in a plan that Enroute wrote for
+/// `PlanDev`.
+fn is_numbered(name: &str, kind: &str, is_ours: bool) -> bool {
+    let number = name.strip_prefix(kind).and_then(|rest| rest.strip_prefix('#'));
+    let is_number = |number: &str| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    name == kind || (is_ours && number.is_some_and(is_number))
 }
 
 const BEGIN: &str = "start of the plan";
@@ -157,13 +159,14 @@ impl Objects {
         let kind = activity.get("type").and_then(Value::as_str).filter(|kind| !kind.is_empty());
         let kind = kind.ok_or_else(|| missing(&place, "`type`"))?;
         let name = activity.get("name").and_then(Value::as_str).map(str::trim);
-        let name = name.filter(|name| !name.is_empty() && !is_numbered(name, kind)).unwrap_or(kind);
+        let taken = activity.get("metadata").and_then(|metadata| metadata.get(DURATION));
+        let name = name.filter(|name| !name.is_empty() && !is_numbered(name, kind, taken.is_some()));
+        let name = name.unwrap_or(kind);
         let arguments = activity.get("arguments").and_then(Value::as_object).into_iter().flatten();
         let mut arguments: Vec<String> = arguments.map(|(name, value)| format!("{name}={value}")).collect();
         if name != kind {
             arguments.push(format!("{DIRECTIVE_TYPE}={kind}"));
         }
-        let taken = activity.get("metadata").and_then(|metadata| metadata.get(DURATION));
         self.leave(BEGIN, &wait, json!({ "tpn-type": "delay-activity", "end-node": start }));
         self.node(&start);
         self.node(&end);

@@ -29,7 +29,8 @@ pub enum ReadError {
     PlanSchema(#[from] PlanSchemaError),
 }
 
-/// Whether a text is to be read as a network: it begins with a map of JSON or EDN or as a pTPN, as no mission in RMPL does.
+/// Returns whether a text is to be read as a network: it begins with a map of JSON or EDN or as a pTPN, as no mission
+/// in RMPL does.
 pub fn is_network_text(text: &str) -> bool {
     if is_ptpn(text) {
         return true;
@@ -43,14 +44,14 @@ pub fn is_network_text(text: &str) -> bool {
     first.is_some_and(|first| first.starts_with(['"', ':']))
 }
 
-/// Whether the text of a file is that of a network, and not of another document in JSON.
+/// Returns whether the text of a file is that of a network, and not of another document in JSON.
 pub fn is_network_file(text: &str) -> bool {
     let is_ours = || text.contains("\"nodes\"") && text.contains("\"arcs\"") && text.contains("enroute-tpn/");
     let is_theirs = || ["network-id", "tpn-type"].iter().any(|key| text.contains(key));
     is_network_text(text) && (is_ptpn(text) || is_theirs() || is_ours() || is_plandev_text(text))
 }
 
-/// Whether the text of a file is a plan of `PlanDev`.
+/// Returns whether the text of a file is a plan of `PlanDev`.
 pub fn is_plandev_text(text: &str) -> bool {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     text.contains("\"activities\"")
@@ -87,7 +88,7 @@ impl Source {
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
     }
 
-    /// What the file says and planning does not honor, in words.
+    /// Returns what the file says and planning does not honor, in words.
     pub fn not_honored(&self) -> Vec<String> {
         match self {
             Self::Enroute(_) => Vec::new(),
@@ -104,7 +105,7 @@ impl Source {
     }
 }
 
-/// What a document in JSON is that has no network, as far as its members tell, and what to do with it.
+/// Returns what a document in JSON is that has no network, as far as its members tell, and what to do with it.
 fn kind_of_other(document: &Value) -> Option<&'static str> {
     let has = |key: &str| document.get(key).is_some();
     let format = document.get("format").and_then(Value::as_str).unwrap_or_default();
@@ -137,12 +138,12 @@ fn kind_of_other(document: &Value) -> Option<&'static str> {
     if has("openmct") && has("rootId") {
         return Some("an export of Open MCT objects; an Open MCT plan has no network");
     }
-    let is_open_mct = |group: &Value| {
-        let first = group.as_array().and_then(|group| group.first());
-        first.is_some_and(|first| ["start", "end"].iter().all(|key| first.get(key).is_some()))
-    };
-    let groups = document.as_object().filter(|groups| !groups.is_empty());
-    if groups.is_some_and(|groups| groups.values().all(is_open_mct)) {
+    let is_activity = |it: &Value| ["start", "end"].iter().all(|key| it.get(key).is_some());
+    let is_open_mct =
+        |group: &Value| group.as_array().is_some_and(|group| group.first().is_none_or(is_activity));
+    let has_activities = |group: &Value| group.as_array().is_some_and(|group| !group.is_empty());
+    let groups = document.as_object();
+    if groups.is_some_and(|it| it.values().all(is_open_mct) && it.values().any(has_activities)) {
         return Some("a plan of Open MCT: it has times, but no network that could be planned");
     }
     if has("$schema") && has("properties") {

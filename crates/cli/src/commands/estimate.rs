@@ -15,7 +15,9 @@ use super::run::probability_json;
 use crate::diagnostics::print_problems;
 use crate::input::{read_control, read_json};
 use crate::number::positive_number;
-use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{
+    E_LIMIT, Format, LIMIT, NO, WRONG, YES, document, exit, failure, print_json, print_text,
+};
 
 /// The search for likely states gives up after this many nodes.
 const MAX_NODES: u32 = 1_000_000;
@@ -57,7 +59,7 @@ fn names(given: &BTreeMap<String, Option<String>>) -> impl Iterator<Item = (&str
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let Some((model, problems)) = load_model(&args.model, args.format, "estimate")? else {
+    let Some((model, mut problems)) = load_model(&args.model, args.format, "estimate")? else {
         return Ok(exit(WRONG));
     };
     let prior = match &args.prior {
@@ -92,6 +94,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 "posterior": posterior.as_ref().map_or_else(|| json!([]), |belief| belief_json(&model, belief)),
                 "conflicts": why,
             });
+            if limit_reached {
+                problems.push(failure(E_LIMIT, "the search for likely states stopped at its limit"));
+            }
             print_json(&document("estimate", &problems, body))?;
         }
         Format::Text => print_text(&belief_text(&model, posterior.as_ref(), &why))?,

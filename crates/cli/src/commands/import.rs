@@ -11,6 +11,7 @@ use interchange::jmpl;
 use interchange::pamela;
 use interchange::pddl;
 use serde_json::{Value, json};
+use snapshot::Problem;
 
 use super::import_models::{import_jmpl, import_pamela};
 use crate::input::read_text;
@@ -93,17 +94,22 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Source::Enroute(_) => Vec::new(),
         Source::PlanSchema(document) => document.not_planned.clone(),
     };
+    let not_honored = source.not_honored();
+    let told = (!not_honored.is_empty()).then(|| rmpl::diagnostics::network::not_honored(&not_honored));
     let network = source.into_network();
     match args.format {
         Format::Json => {
             let mut body = tpn::network_json::network_to_json(&network);
             body["not_planned"] = not_planned.into();
-            print_json(&document("tpn", &[], body))?;
+            print_json(&document("tpn", &Problem::all(told.as_slice(), ""), body))?;
         }
         Format::Text => {
             print_text(&tpn::text::to_text(&network))?;
             if !not_planned.is_empty() {
                 print_text(&format!("ignored (no effect on planning): {}\n", not_planned.join(", ")))?;
+            }
+            if let Some(told) = told {
+                print_error(&format!("warning: {}", told.message));
             }
         }
     }
@@ -135,7 +141,8 @@ fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
     Ok(exit(YES))
 }
 
-/// Whether a text that is not a network is a mission: by the name of its file, or because it declares what to do.
+/// Returns whether a text that is not a network is a mission: by the name of its file, or because it declares what to
+/// do.
 fn is_mission(file: &Path, text: &str) -> bool {
     let program = rmpl::parse(text).program();
     let is_named_so = file.extension().is_some_and(|extension| extension == "rmpl");

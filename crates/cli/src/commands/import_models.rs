@@ -106,7 +106,7 @@ fn print(read: &Translation, file: &Path, format: Format) -> anyhow::Result<Exit
             read.left_out.iter().for_each(|what| print_error(&format!("not read: {what}")));
             read.remarks.iter().for_each(|remark| print_error(&format!("note: {remark}")));
             if any_error(&problems) {
-                print_error(&format!("error: the model that was read of {} has errors:", file.display()));
+                print_error(&format!("error: the model read from {} has errors:", file.display()));
                 print_problems(&file.display().to_string(), &read.text, &problems)?;
             }
         }

@@ -4,6 +4,7 @@
 //! times `--cell`, so that cell (column, row) covers x from column to column + 1. An elevation map is read as its picture too:
 //! dark cells are obstacles.
 
+use exact::counted;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -12,7 +13,9 @@ use anyhow::Context as _;
 use clap::ValueEnum;
 use motion::{Failure, PlannerKind, Query, Search, Settings, ShortcutSettings, Statistics};
 use nalgebra::Point2;
+use rmpl::Diagnostic;
 use serde_json::{Value, json};
+use snapshot::Problem;
 use terrain::format::{FileFormat, ImportOptions, read_raster};
 use terrain::{ConfigurationSpace, GridFrame, Occupancy};
 
@@ -21,7 +24,8 @@ use crate::ground::{LARGEST_MAP_BYTES, with_label};
 use crate::input::{folder_of, read_bytes};
 use crate::number::{number_in, positive_number, seed};
 use crate::output::{
-    Format, LIMIT, NO, YES, document, exit, print_error, print_json, print_text, without_timings,
+    E_LIMIT, Format, LIMIT, NO, YES, document, exit, failure, print_error, print_json, print_text,
+    without_timings,
 };
 
 /// Find a path on a map of obstacles.
@@ -116,7 +120,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let runs: Vec<Run> = (0..args.repeat).map(|run| search(args, &map, u64::from(run))).collect();
     let first = runs.first().context("at least one run")?;
     match args.format {
-        Format::Text => print_text(&describe(&runs, !args.no_timings))?,
+        Format::Text => {
+            if let Some(unclear) = &map.unclear {
+                print_error(&format!("note: {}", unclear.message));
+            }
+            print_text(&describe(&runs, !args.no_timings))?;
+        }
         Format::Json => {
             let mut body = to_json(&runs);
             if args.no_timings {
@@ -124,14 +133,22 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 let repeated = body.get_mut("runs").and_then(Value::as_array_mut);
                 repeated.into_iter().flatten().for_each(without_timings);
             }
-            print_json(&document("path", &[], body))?;
+            let mut problems = Problem::all(map.unclear.as_slice(), "");
+            let unanswered = first.path.as_ref().err().filter(|why| is_limit(why));
+            problems.extend(unanswered.map(|why| failure(E_LIMIT, &why.to_string())));
+            print_json(&document("path", &problems, body))?;
         }
     }
     Ok(exit(match first.path {
         Ok(_) => YES,
-        Err(Failure::NotFound { .. } | Failure::Stopped { .. }) => LIMIT,
+        Err(ref why) if is_limit(why) => LIMIT,
         Err(_) => NO,
     }))
+}
+
+/// Returns whether a longer search may find a path.
+const fn is_limit(why: &Failure) -> bool {
+    matches!(why, Failure::NotFound { .. } | Failure::Stopped { .. })
 }
 
 /// A map as vehicles see it.
@@ -139,10 +156,12 @@ struct Map {
     space: ConfigurationSpace,
     /// Values row by row from the top; NaN where the file has none.
     samples: Vec<f32>,
+    /// What to say of cells whose meaning is not clear, if there are any.
+    unclear: Option<Diagnostic>,
 }
 
 impl Map {
-    /// Whether the file has no value for the cell of a point in the map.
+    /// Returns whether the file has no value for the cell of a point in the map.
     fn is_unknown(&self, point: Point2<f64>) -> bool {
         let frame = self.space.frame();
         let index =
@@ -173,18 +192,16 @@ fn load(args: &Args) -> anyhow::Result<Map> {
     );
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
-    if raster.num_unclear > 0 {
-        let cells = (raster.num_unclear, raster.samples.len());
-        let unclear = rmpl::diagnostics::map::unclear(cells, &name.to_string(), rmpl::Span::default());
-        print_error(&format!("note: {}", unclear.message));
-    }
+    let cells = (raster.num_unclear, raster.samples.len());
+    let unclear = (raster.num_unclear > 0)
+        .then(|| rmpl::diagnostics::map::unclear(cells, &name.to_string(), rmpl::Span::default()));
     let frame = GridFrame::new(raster.width, raster.height, args.cell);
     if let Some(step) = args.step {
         let least = args.cell * MIN_STEP_CELLS;
         anyhow::ensure!(step >= least, "--step must be at least {least}, a hundredth of a cell");
     }
     let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &raster.obstacles()), args.radius);
-    Ok(Map { space, samples: raster.samples })
+    Ok(Map { space, samples: raster.samples, unclear })
 }
 
 fn search(args: &Args, map: &Map, run: u64) -> Run {
@@ -282,11 +299,11 @@ fn describe(runs: &[Run], has_timings: bool) -> String {
         match &run.path {
             Ok(path) => {
                 text += &format!(
-                    "{prefix}length {:.3} ({:.3} before shortening), {} points, {} samples{}\n",
+                    "{prefix}length {:.3} ({:.3} before shortening), {}, {}{}\n",
                     path.length_m(),
                     run.raw_length,
-                    path.points_m.len(),
-                    run.statistics.samples,
+                    counted(path.points_m.len(), "point"),
+                    counted(run.statistics.samples, "sample"),
                     took(run)
                 );
                 if runs.len() == 1 {

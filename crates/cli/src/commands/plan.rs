@@ -26,7 +26,8 @@ use crate::input::read_json;
 use crate::number::{positive_number, seed};
 use crate::opened::Opened;
 use crate::output::{
-    Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
+    E_INPUT, E_LIMIT, E_TIME, Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, failure,
+    print_json, print_text, without_timings,
 };
 use crate::save::{refuse_input, save};
 use crate::target::{Target, parse_threat_gap};
@@ -110,6 +111,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let body = json!({ "status": "error", "plans": [], "failure": null, "stats": {} });
         return mission.refuse(&problems, args.format, ("plan", body));
     }
+    let rules = args.rules.as_deref().map(read_rules).transpose()?;
     args.trace.as_deref().map_or(Ok(()), refuse_input)?;
     let begun = Instant::now();
     let deadline = args.time_limit.start();
@@ -126,8 +128,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         save(file, &kirk::trace_json_lines(&planned.network, trace))?;
     }
     let outcome = &planned.planning.outcome;
-    let rules = match &args.rules {
-        Some(path) => HeldRules::new(&read_rules(path)?, &compiled.program, &planned),
+    let rules = match &rules {
+        Some(rules) => HeldRules::new(rules, &compiled.program, &planned),
         None => HeldRules::default(),
     };
     match args.format {
@@ -141,6 +143,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 body["rules_by_plan"] = rules.by_plan_json();
             }
             problems.extend(Problem::all(&planned.warnings, &mission.source));
+            problems.extend(unanswered(&planned));
             print_json(&document("plan", &problems, body))?;
         }
         Format::Text => {
@@ -296,6 +299,24 @@ fn failure_json(failure: &Failure, planning: &Planning, source: &str, network: &
         "repairs": repairs,
         "gap": failure.is_of_gap,
     })
+}
+
+/// Returns why the search gave no answer, or not all of it, as a diagnostic.
+fn unanswered(planned: &Planned) -> Option<Problem> {
+    let planning = &planned.planning;
+    match planning.outcome.status {
+        Status::Plan | Status::NoPlan => None,
+        Status::Limit => {
+            let code = if planning.undrivable.is_empty() { E_TIME } else { E_LIMIT };
+            Some(match planning.undecided() {
+                Some(why) => failure(code, &format!("undecided: {why}")),
+                None => failure(E_LIMIT, "limit reached: there may be more plans"),
+            })
+        }
+        Status::Error => {
+            planning.outcome.unplannable_message(&planned.network).map(|why| failure(E_INPUT, &why))
+        }
+    }
 }
 
 fn choices_json(choices: &[tpn::Choice]) -> Value {

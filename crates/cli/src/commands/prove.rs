@@ -1,6 +1,7 @@
 //! `enroute prove`: the properties of a control program that hold in every run with its plant, and the flight rules of a
 //! mission that hold in every plan.
 
+use exact::counted;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -18,7 +19,9 @@ use crate::commands::prove_rules::{self, Call};
 use crate::commands::run::{KnowledgeArg, read_system};
 use crate::deadline::TimeLimit;
 use crate::number::{number_in, positive_number, seed};
-use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{
+    E_LIMIT, Format, LIMIT, NO, WRONG, YES, document, exit, failure, print_json, print_text,
+};
 use crate::target::Target;
 
 /// Prove properties of a control program in all runs, or rules of a mission in all plans.
@@ -44,13 +47,13 @@ pub struct Args {
     /// Plant model [default: the one that the program file declares].
     #[arg(long, value_name = "M.rmpl")]
     model: Option<PathBuf>,
-    /// Prove this, such as "never A=On AND B=On" (repeatable) [default: five checks].
+    /// Property to prove, such as "never A=On AND B=On" (repeatable) [default: five checks].
     #[arg(long, value_name = "PROPERTY")]
     property: Vec<String>,
     /// Let components fail at most N times in a run.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = number_in(0..=u32::MAX))]
     faults: u32,
-    /// What the program knows of its plant.
+    /// Information that the program has about its plant.
     #[arg(long, value_enum, default_value_t)]
     knowledge: KnowledgeArg,
     /// Stop after N states (exit status 3).
@@ -94,7 +97,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         return prove_rules::run(&call, deadline);
     }
-    let (system, problems) = read_system(&args.file, args.model.as_deref(), args.format, ABOUT_MISSIONS)?;
+    let (system, mut problems) = read_system(&args.file, args.model.as_deref(), args.format, ABOUT_MISSIONS)?;
     let Some(system) = &system else {
         if args.format == Format::Json {
             print_json(&document("prove", &problems, json!({})))?;
@@ -114,8 +117,20 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(steps) => Some((steps, chance_to_end(system, knowledge, steps, MAX_PLACES)?)),
         None => None,
     };
+    let is = |verdict: fn(&Verdict) -> bool| proof.verdicts.iter().any(|(_, it)| verdict(it));
+    let status = if is(|it| matches!(it, Verdict::Broken(_) | Verdict::Never(_))) {
+        NO
+    } else if is(|it| *it == Verdict::Open) {
+        LIMIT
+    } else {
+        YES
+    };
     match args.format {
         Format::Json => {
+            if status == LIMIT {
+                let why = proof.stopped.as_deref().unwrap_or("a limit was reached");
+                problems.push(failure(E_LIMIT, &format!("not all states were explored: {why}")));
+            }
             let verdicts = proof
                 .verdicts
                 .iter()
@@ -136,14 +151,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         Format::Text => print_text(&text(args, system, &proof, chance.as_ref()))?,
     }
-    let is = |verdict: fn(&Verdict) -> bool| proof.verdicts.iter().any(|(_, it)| verdict(it));
-    Ok(exit(if is(|it| matches!(it, Verdict::Broken(_) | Verdict::Never(_))) {
-        NO
-    } else if is(|it| *it == Verdict::Open) {
-        LIMIT
-    } else {
-        YES
-    }))
+    Ok(exit(status))
 }
 
 fn move_json(by: &Move, model: &Model) -> Value {
@@ -173,19 +181,15 @@ fn verdict_json(property: &Property, verdict: &Verdict, model: &Model) -> Value 
     }
 }
 
-pub(super) fn count(number: usize, one: &str) -> String {
-    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
-}
-
 fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, Interval)>) -> String {
     let faults = match args.faults {
         0 => "no component fails".to_owned(),
-        some => format!("at most {}", count(some as usize, "fault")),
+        some => format!("at most {}", counted(some as usize, "fault")),
     };
     let mut out = format!(
         "Explored {} and {}, with {faults}.\n",
-        count(proof.states, "state"),
-        count(proof.transitions, "transition")
+        counted(proof.states, "state"),
+        counted(proof.transitions, "transition")
     );
     if let Some(stopped) = &proof.stopped {
         out.push_str(&format!("Not all states were explored: {stopped}.\n"));
@@ -195,7 +199,7 @@ fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, 
             Verdict::Holds => out.push_str(&format!("holds      {property}\n")),
             Verdict::Open => out.push_str(&format!(
                 "open       {property}: no counterexample in the states explored, up to {}\n",
-                count(proof.depth as usize, "step")
+                counted(proof.depth as usize, "step")
             )),
             Verdict::Never(what) => {
                 out.push_str(&format!("broken     {property}\n"));
@@ -210,7 +214,7 @@ fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, 
     if let Some((steps, interval)) = chance {
         let (low, high) = interval.decimals();
         let value = if low == high { low } else { format!("{low} to {high}") };
-        let steps = count(*steps as usize, "step");
+        let steps = counted(*steps as usize, "step");
         out.push_str(&format!("chance     the program ends within {steps}: {value}\n"));
     }
     out

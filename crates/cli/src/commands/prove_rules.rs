@@ -1,5 +1,6 @@
 //! `enroute prove --rules`: the flight rules of a mission that hold in every plan.
 
+use exact::counted;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -9,11 +10,12 @@ use review::{FlightRules, MissionRule};
 use serde_json::{Value, json};
 use tpn::Choice;
 
-use crate::commands::prove::count;
 use crate::commands::report::read_rules;
 use crate::deadline::{Deadline, TimeIsUp, Undecided};
 use crate::diagnostics::print_problems;
-use crate::output::{Format, LIMIT, NO, YES, document, escaped, exit, print_json, print_text};
+use crate::output::{
+    E_LIMIT, E_TIME, Format, LIMIT, NO, YES, document, escaped, exit, failure, print_json, print_text,
+};
 use crate::save::{refuse_input, save};
 use crate::target::Target;
 
@@ -34,7 +36,7 @@ pub(super) fn run(call: &Call<'_>, deadline: Deadline) -> anyhow::Result<ExitCod
     call.output.map_or(Ok(()), refuse_input)?;
     let mut mission = call.target.open()?;
     let compiled = mission.compile()?;
-    let problems = compiled.problems();
+    let mut problems = compiled.problems();
     if compiled.network().is_none() {
         return mission.refuse(&problems, call.format, ("prove", json!({ "rules": [] })));
     }
@@ -59,6 +61,10 @@ pub(super) fn run(call: &Call<'_>, deadline: Deadline) -> anyhow::Result<ExitCod
         Format::Json => {
             let rules = proven.iter().map(|(rule, found)| rule_json(rule, found));
             let body = json!({ "rules": rules.collect::<Vec<_>>() });
+            if is_undecided && !is_broken {
+                let code = if deadline.is_over() { E_TIME } else { E_LIMIT };
+                problems.push(failure(code, Undecided::Proof.in_words()));
+            }
             print_json(&document("prove", &problems, body))?;
         }
         Format::Text => {
@@ -100,7 +106,7 @@ fn rule_json(rule: &MissionRule, proven: &Proven) -> Value {
 
 fn text(proven: &[(MissionRule, Proven)]) -> String {
     let alternatives: u64 = proven.iter().map(|(_, found)| found.alternatives).sum();
-    let tried = count(usize::try_from(alternatives).unwrap_or(usize::MAX), "alternative");
+    let tried = counted(alternatives, "alternative");
     let mut out = format!("Searched {tried} for plans that violate a rule.\n");
     for (rule, found) in proven {
         let word = if found.verdict.is_open() { "open" } else { found.verdict.name() };

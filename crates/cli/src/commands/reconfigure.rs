@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::estimate::load_model;
 use crate::input::read_json;
-use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{self, E_LIMIT, Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// Find commands that take a plant from a state to a goal.
 #[derive(clap::Args)]
@@ -31,7 +31,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let Some((model, problems)) = load_model(&args.model, args.format, "reconfigure")? else {
+    let Some((model, mut problems)) = load_model(&args.model, args.format, "reconfigure")? else {
         return Ok(exit(WRONG));
     };
     let state: BTreeMap<String, String> = read_json(&args.state)?;
@@ -61,7 +61,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Err(unreachable) => failure(&model, &unreachable),
     };
     match args.format {
-        Format::Json => print_json(&document("reconfigure", &problems, body))?,
+        Format::Json => {
+            if status == LIMIT {
+                problems.push(output::failure(E_LIMIT, text.trim_end()));
+            }
+            print_json(&document("reconfigure", &problems, body))?;
+        }
         Format::Text => print_text(&text)?,
     }
     Ok(exit(status))

@@ -1,5 +1,6 @@
 //! `enroute run`: a control program in a closed loop with a simulated plant.
 
+use exact::counted;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,7 +19,9 @@ use snapshot::Problem;
 use crate::diagnostics::print_problems;
 use crate::input::read_control;
 use crate::number::{number_in, positive_number, seed};
-use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{
+    E_LIMIT, Format, LIMIT, NO, WRONG, YES, document, exit, failure, print_json, print_text,
+};
 
 /// So many states before a step may be named as those that states come from.
 const MAX_BEFORE: usize = 64;
@@ -46,7 +49,7 @@ pub struct Args {
     /// Track only the K most likely states of each group of components.
     #[arg(long, value_name = "K", value_parser = positive_number)]
     k: Option<u32>,
-    /// What the program knows of its plant.
+    /// Information that the program has about its plant.
     #[arg(long, value_enum, default_value_t)]
     knowledge: KnowledgeArg,
     /// Show where states come from, and what observations ruled out.
@@ -63,7 +66,7 @@ pub struct Args {
 /// What a program knows of its plant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum KnowledgeArg {
-    /// What is estimated from commands and observations.
+    /// Estimates from commands and observations.
     #[default]
     Estimated,
     /// The true modes of all components.
@@ -105,7 +108,7 @@ pub(super) fn read_system(
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let (system, problems) =
+    let (system, mut problems) =
         read_system(&args.file, args.model.as_deref(), args.format, "use `enroute simulate`")?;
     let Some(system) = &system else {
         if args.format == Format::Json {
@@ -130,7 +133,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         run.step(inputs.get(&step).unwrap_or(&StepInput::default()))?;
     }
     match args.format {
-        Format::Json => print_json(&document("run", &problems, run_json(system, &run, args.trajectories)))?,
+        Format::Json => {
+            problems.extend(limit_of(&run).map(|why| failure(E_LIMIT, &why)));
+            print_json(&document("run", &problems, run_json(system, &run, args.trajectories)))?;
+        }
         Format::Text => print_text(&run_text(system, &run, args.trajectories))?,
     }
     Ok(exit(match run.status() {
@@ -138,6 +144,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         RunStatus::Refuted | RunStatus::Deadlock => NO,
         RunStatus::Running | RunStatus::LimitReached => LIMIT,
     }))
+}
+
+/// Returns which limit ended a run, in a sentence without an end.
+fn limit_of(run: &Run) -> Option<String> {
+    match run.status() {
+        RunStatus::Ended | RunStatus::Refuted | RunStatus::Deadlock => None,
+        RunStatus::Running => {
+            Some(format!("the program did not end within {}", counted(run.records().len(), "step")))
+        }
+        RunStatus::LimitReached => Some("the estimate has more states than its limit".to_owned()),
+    }
 }
 
 /// The faults and observations of the arguments, by step.
@@ -221,15 +238,16 @@ fn tally_text(tally: &ProgramTally, seed: u64) -> String {
     );
     for (fault, tally) in &tally.faults {
         out.push_str(&format!(
-            "  {fault} in {} runs, {} of which reached the end\n",
-            tally.runs, tally.reached
+            "  {fault} in {}, {} of which reached the end\n",
+            counted(tally.runs, "run"),
+            tally.reached
         ));
     }
     for (label, runs) in &tally.stuck {
-        out.push_str(&format!("  still active in {runs} runs: {label}\n"));
+        out.push_str(&format!("  still active in {}: {label}\n", counted(*runs, "run")));
     }
     if tally.refuted > 0 {
-        out.push_str(&format!("  observations refuted the belief in {} runs\n", tally.refuted));
+        out.push_str(&format!("  observations refuted the belief in {}\n", counted(tally.refuted, "run")));
     }
     if let Some(number) = tally.first_stuck {
         let seed = run_seed(seed, number);
@@ -526,7 +544,7 @@ fn run_text(system: &System, run: &Run, has_trajectories: bool) -> String {
         out.push_str(&format!("Deadlock: {}.\n", run.deadlock().join(", ")));
     }
     if run.is_done() {
-        out.push_str(&format!("The program ended after {} steps.\n", run.records().len()));
+        out.push_str(&format!("The program ended after {}.\n", counted(run.records().len(), "step")));
     } else {
         out.push_str(match run.status() {
             RunStatus::Refuted => "The belief is refuted, so the run ends. Still active:\n",

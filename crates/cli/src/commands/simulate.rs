@@ -133,7 +133,7 @@ fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> V
         "duration": drive.duration,
         "driven_m": drive.driven_m,
         "reroutes": drive.reroutes,
-        "least_clearance_m": drive.least_clearance_m.is_finite().then_some(drive.least_clearance_m),
+        "least_clearance_m": drive.min_clearance_m.is_finite().then_some(drive.min_clearance_m),
         "vehicles": drive.vehicles.iter().map(|vehicle| json!({
             "vehicle": name(vehicle.vehicle),
             "track": track(&vehicle.frames),

@@ -137,14 +137,14 @@ fn names_of_directives_survive_however_often_a_plan_is_written() {
         directive["name"] = json!(name);
         directive
     };
-    let activities = [named(1, "First"), named(2, "Twice"), named(3, "Twice")];
+    let activities = [named(1, "First"), named(2, "Twice"), named(3, "Twice"), named(4, "Bake2")];
     let mut file = written("names-0.json", &plan(&activities).to_string());
     for round in 1..=2 {
         let path = file.to_str().expect("a path");
         let again = told(&enroute(&["export", path, "--as", "plandev", "--epoch", "2024-08-02T00:00:00Z"]));
         let names = again["activities"].as_array().expect("directives").iter();
         let names: Vec<&str> = names.filter_map(|directive| directive["name"].as_str()).collect();
-        assert_eq!(names, ["First", "Twice", "Twice"], "round {round}");
+        assert_eq!(names, ["First", "Twice", "Twice", "Bake2"], "round {round}");
         file = written(&format!("names-{round}.json"), &again.to_string());
     }
 }

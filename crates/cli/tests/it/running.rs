@@ -262,7 +262,7 @@ fn no_state_is_written_while_an_activity_is_under_way() {
     let run = enroute(&["simulate", &mission, "--disturb", &script, "--state", &saved]);
     assert_eq!(run.status.code(), Some(2), "{run:?}");
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(said.contains("Use#1 is under way at the end of the run"), "{said}");
+    assert!(said.contains("Use#1 is in progress at the end of the run"), "{said}");
     assert_eq!(std::fs::read_to_string(&saved).expect("it is still there"), "as before");
 }
 

@@ -30,6 +30,11 @@ fn an_input_is_not_written_over_by_whatever_name() {
             assert!(said(&output).contains("is an input of this call"), "{arguments:?}: {output:?}");
         }
     }
+    let rules = "{\"format\":\"enroute-rules/1\"}";
+    std::fs::write(folder.join("rules.json"), rules).expect("written");
+    let output = enroute_in(&folder, &["plan", "day.rmpl", "--rules", "rules.json", "--trace", "rules.json"]);
+    assert!(said(&output).contains("is an input of this call"), "{output:?}");
+    assert_eq!(std::fs::read_to_string(folder.join("rules.json")).expect("the rules"), rules);
     assert_eq!(std::fs::read_to_string(folder.join("day.rmpl")).expect("the mission"), text);
     assert_eq!(
         std::fs::read_to_string(folder.join("world.rmpl")).expect("the world"),

@@ -44,7 +44,7 @@ pub enum GeoJsonError {
     /// Its coordinates are in a system that is not known here.
     #[error(
         "coordinates in {0} are not supported; convert them to degrees (RFC 7946), as with `ogr2ogr -t_srs EPSG:4326 -lco \
-         RFC7946=YES OUT.geojson IN`"
+         RFC7946=YES OUT.geojson IN`, or use `enroute import --meters` if they are meters"
     )]
     ReferenceSystem(String),
     /// A position that is none.
@@ -64,7 +64,7 @@ pub enum GeoJsonError {
     Empty,
 }
 
-/// Whether a document is `GeoJSON`, by its `type`.
+/// Returns whether a document is `GeoJSON`, by its `type`.
 pub fn is_geojson(document: &Value) -> bool {
     let kind = document.get("type").and_then(Value::as_str).unwrap_or_default();
     (kind == "FeatureCollection" && document.get("features").is_some_and(Value::is_array))
@@ -111,8 +111,10 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
     if reader.shapes.is_empty() {
         return Err(GeoJsonError::Empty);
     }
-    let frame = Frame::of_file(&document)?.overridden(wanted);
-    projection::check_mercator(&document, reader.positions())?;
+    let frame = Frame::of_file(&document, wanted)?.overridden(wanted);
+    if !wanted.is_meters {
+        projection::check_mercator(&document, reader.positions())?;
+    }
     let projection = frame.projection(reader.positions())?;
     let mut lines = format!("// Places and obstacles of {}: {projection}.\n", one_line(name));
     match reader.lines {
@@ -311,7 +313,7 @@ impl Reader {
         })
     }
 
-    /// What a feature is called as a name of the language, told from those before it.
+    /// Returns what a feature is called as a name of the language, told from those before it.
     fn free_name(&mut self, said: &str, plain: &str) -> String {
         let mut name: String =
             said.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();

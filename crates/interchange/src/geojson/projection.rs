@@ -29,10 +29,13 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// What a file says of itself.
-    pub fn of_file(document: &Value) -> Result<Self, GeoJsonError> {
+    /// Returns what a file says of itself, but for what `wanted` says: then its reference system does not matter.
+    pub fn of_file(document: &Value, wanted: &Self) -> Result<Self, GeoJsonError> {
         let said = |problem: &str| GeoJsonError::Shape(format!("`{FRAME}` {problem}"));
         let Some(frame) = document.get(FRAME) else {
+            if *wanted != Self::default() {
+                return Ok(*wanted);
+            }
             let is_meters = System::of(document)? == System::Meters;
             return Ok(Self { is_meters, ..Self::default() });
         };
@@ -109,8 +112,8 @@ impl System {
         Ok(of_all.or(of_geometry).or(own).unwrap_or(Self::Degrees))
     }
 
-    /// What a `crs` says. Meters are those of UTM, and of the Web Mercator, in which plans of buildings and yards are drawn
-    /// around (0, 0), where it is true.
+    /// Returns what a `crs` says. Meters are those of UTM, and of the Web Mercator, in which plans of buildings and
+    /// yards are drawn around (0, 0), where it is true.
     fn named(holder: &Value) -> Result<Option<Self>, GeoJsonError> {
         let Some(system) = holder.get("crs").filter(|system| !system.is_null()) else { return Ok(None) };
         let name = system.get("properties").and_then(|it| it.get("name")).and_then(Value::as_str);
@@ -118,7 +121,7 @@ impl System {
         let code = name.rsplit([':', '/']).next().unwrap_or_default();
         match code.parse::<u32>() {
             _ if code == "CRS84" => Ok(Some(Self::Degrees)),
-            Ok(4326) => Ok(Some(Self::Degrees)),
+            Ok(4326 | 4258 | 4269 | 4979) => Ok(Some(Self::Degrees)),
             Ok(WEB_MERCATOR | 32_601..=32_660 | 32_701..=32_760 | 25_828..=25_838) => Ok(Some(Self::Meters)),
             _ => Err(GeoJsonError::ReferenceSystem(super::one_line(name))),
         }
@@ -210,7 +213,7 @@ impl Projection {
         [lon.to_degrees(), lat.to_degrees()]
     }
 
-    /// What [`FRAME`] says of it.
+    /// Returns what [`FRAME`] says of it.
     pub fn to_json(&self) -> Value {
         match self {
             Self::Meters => serde_json::json!({ "units": "metres" }),

@@ -104,7 +104,7 @@ impl Action {
         [&self.start, &self.end]
     }
 
-    /// Whether the start sets atoms that have to hold throughout.
+    /// Returns whether the start sets atoms that have to hold throughout.
     pub(super) fn rests_on_start(&self) -> bool {
         self.throughout.literals.keys().any(|atom| self.start.sets.contains_key(atom))
     }
@@ -638,7 +638,7 @@ impl<'task> Grounder<'task> {
         })
     }
 
-    /// What to minimize.
+    /// Returns what to minimize.
     fn metric(&mut self, metric: &'task Metric) -> Result<Linear, PddlError> {
         let place = format!("the metric `{}`", metric.text);
         let measure = self.linear(&metric.measure, &Bindings::new(), None, &place)?;
@@ -704,7 +704,7 @@ fn compare(
         (Comparison::AtLeast, false) => Comparison::Less,
         (Comparison::Greater, false) => Comparison::AtMost,
         (Comparison::Equal, false) if !difference.is_constant() => {
-            return Err(said("a condition that a number that changes has another value"));
+            return Err(said("an inequality (`not =`) of a number that changes"));
         }
         (Comparison::Equal, false) => {
             return Ok(if difference.constant.is_zero() { Truth::No } else { Truth::Yes });

@@ -72,7 +72,7 @@ impl Reader<'_> {
 
     fn value(&mut self, depth: usize) -> Result<Value, EdnError> {
         if depth > DEEPEST {
-            return Err(self.error("values are nested too deeplyly"));
+            return Err(self.error("values are nested too deeply"));
         }
         self.skip_blank(depth)?;
         match self.peek() {

@@ -78,7 +78,7 @@ pub fn write(network: &Network) -> Result<String, PtpnError> {
     Ok(out)
 }
 
-/// Whether an arc is an episode.
+/// Returns whether an arc is an episode.
 fn is_act(arc: &Arc) -> bool {
     matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Delay | ArcKind::Path)
 }
@@ -168,7 +168,7 @@ fn call(network: &Network, arc: &Arc) -> String {
     format!("{}({})", occurrence.activity, arguments.join(", "))
 }
 
-/// What an episode asks, each of one value.
+/// Returns what an episode asks, each of one value.
 fn conditions(network: &Network, arc: &Arc) -> String {
     let asked =
         arc.labels.iter().map(|id| &network.labels[id.index()]).filter(|label| label.mode == LabelMode::Ask);
@@ -206,10 +206,10 @@ fn left_out(network: &Network) -> Vec<String> {
     let counted = [
         (
             network.labels.iter().filter(|label| !is_written(label)).count(),
-            "conditions that are told, last or have several values",
+            "conditions that are assertions, span blocks, or have several values",
         ),
         (network.uses.len(), "uses of resources"),
-        (network.worths.len(), "wishes"),
+        (network.worths.len(), "costs or rewards"),
         (network.objective.len(), "objectives"),
         (network.departures.len() + network.distances.len(), "paths"),
     ];

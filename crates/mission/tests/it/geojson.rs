@@ -179,6 +179,9 @@ fn what_cannot_be_placed_is_refused_with_its_reason() {
     );
     projected["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::31467" } });
     assert!(refusal(&projected).contains("EPSG::31467 are not supported"));
+    let wanted = Frame { is_meters: true, ..Frame::default() };
+    let read = declarations("a.geojson", &projected.to_string(), &wanted).expect("they are meters");
+    assert!(read.contains("location A (500000, 4000000)"), "{read}");
     let far = collection(&[point("A", [0.0, 0.0]), point("B", [90.0, 0.0])]);
     assert!(refusal(&far).contains("B: 10008 km from the origin"), "{}", refusal(&far));
     assert!(refusal(&collection(&[])).contains("needs a Point, Polygon"));

@@ -3,12 +3,13 @@
 use super::keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
 use super::lexer::{Token, TokenKind, is_hyphen, lex};
 
-/// Whether `text` is in prefix notation rather than in the notation of missions.
+/// Returns whether `text` is in prefix notation rather than in the notation of missions.
 ///
 /// Broken texts are judged by what they show: forms of the one notation against marks of the other. Comments of
 /// either notation (`; …`, `// …`, `/* … */`) do not count.
 pub fn is_control_text(text: &str) -> bool {
-    if has_control_block(text) {
+    // Neither notation begins like markup.
+    if has_control_block(text) || text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
         return false;
     }
     let bare = without_mission_comments(text);
@@ -52,7 +53,7 @@ pub fn is_control_text(text: &str) -> bool {
     control > mission || (control == mission && kind(0) == Some(TokenKind::Open))
 }
 
-/// Whether a line begins with `control {`, which only missions have.
+/// Returns whether a line begins with `control {`, which only missions have.
 fn has_control_block(text: &str) -> bool {
     text.lines().any(|line| {
         let behind = line.strip_prefix("control");

@@ -270,6 +270,7 @@ fn a_duration_may_be_a_parameter_and_is_checked_where_it_is_handed_over() {
 #[test]
 fn words_of_time_alone_do_not_make_a_mission_a_control_program() {
     assert!(!is_control_text("scenario S = { Drive(at), Move(wait); }"));
+    assert!(!is_control_text("<?xml version=\"1.0\"?>\n<dispatch>(MODE=A)</dispatch>"));
     assert!(is_control_text("(WAIT 3)"));
     assert!(is_control_text("(TIMEOUT 3 (x = a))"));
 }

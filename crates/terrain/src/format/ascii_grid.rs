@@ -59,7 +59,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     for word in words {
         let value = if is_absent(word) { Ok(f64::NAN) } else { word.parse() };
         let value = value.map_err(|_| malformed(format!("value {} is `{word}`", samples.len() + 1)))?;
-        samples.push(if Some(value) == no_data { f32::NAN } else { value as f32 });
+        let is_absent = no_data.is_some_and(|no_data| value as f32 == no_data as f32);
+        samples.push(if is_absent { f32::NAN } else { value as f32 });
         if samples.len() > count {
             return Err(malformed(format!("the file has more than {width} × {height} values")));
         }
@@ -75,7 +76,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     Ok(Raster { cell_size_m, origin_m, ..Raster::new((width, height), samples, meaning) })
 }
 
-/// Whether a word represents a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.
+/// Returns whether a word represents a height that is not there, as programs write it: in place of a value, and as
+/// `NODATA_value`.
 fn is_absent(word: &str) -> bool {
     ["nan", "-nan", "null", "none", "na", "inf", "-inf", "infinity", "-infinity"]
         .iter()

@@ -201,7 +201,7 @@ impl<'file> Writer<'file> {
         }
     }
 
-    /// Whether components of a class, or parts of them, have modes.
+    /// Returns whether components of a class, or parts of them, have modes.
     fn has_state(&self, class: &'file Class) -> bool {
         let mut visited: BTreeSet<&str> = BTreeSet::new();
         let mut waiting = vec![class];
@@ -422,7 +422,7 @@ impl<'file> Writer<'file> {
             (Some(number), _) => number,
             (None, Some((_, number))) => {
                 self.evaluator.remark(format!(
-                    "no file says which probability `{given}` is: it is {number}, as the rank of Livingstone has it"
+                    "no file defines the probability `{given}`: Enroute uses {number}, from Livingstone's ranks"
                 ));
                 number
             }

@@ -17,7 +17,7 @@ struct Options<'file> {
 }
 
 impl<'file> Writer<'file> {
-    /// What stands in the braces of a method.
+    /// Returns what stands in the braces of a method.
     pub(super) fn body(&mut self, place: Place<'_, 'file>) -> String {
         let method = place.method;
         let mut steps = Vec::new();
@@ -141,7 +141,7 @@ impl<'file> Writer<'file> {
             }
             "whenever" | "choose-whenever" => {
                 return Err(format!(
-                    "`{head}`: a plan does nothing again each time that a condition becomes true"
+                    "`{head}`: a plan cannot repeat an activity each time a condition becomes true"
                 ));
             }
             _ => return self.call(tree.line(), head, rest, place),
