@@ -27,8 +27,8 @@ use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfRequest, Sto
 /// A window's surroundings.
 pub struct NativeHost {
     link: Link<CoreThreads>,
-    from_outside: Receiver<News>,
-    outside: Sender<News>,
+    receiver: Receiver<News>,
+    sender: Sender<News>,
     wake: Context,
     folder: Option<PathBuf>,
     begun: Instant,
@@ -45,7 +45,7 @@ enum News {
 /// and is not listened to.
 struct CoreThreads {
     running: Option<CoreThread>,
-    outside: Sender<News>,
+    sender: Sender<News>,
     wake: Context,
 }
 
@@ -70,9 +70,9 @@ impl NativeHost {
     }
 
     fn start_in(wake: Context, folder: Option<PathBuf>) -> Self {
-        let (outside, from_outside) = channel();
-        let threads = CoreThreads { running: None, outside: outside.clone(), wake: wake.clone() };
-        Self { link: Link::start(threads, 0.0), from_outside, outside, wake, folder, begun: Instant::now() }
+        let (sender, receiver) = channel();
+        let threads = CoreThreads { running: None, sender: sender.clone(), wake: wake.clone() };
+        Self { link: Link::start(threads, 0.0), receiver, sender, wake, folder, begun: Instant::now() }
     }
 
     /// Asks for a frame when the link has something to do by itself.
@@ -108,24 +108,24 @@ impl NativeHost {
     }
 
     fn background(&self) -> Background {
-        Background { outside: self.outside.clone(), wake: self.wake.clone() }
+        Background { sender: self.sender.clone(), wake: self.wake.clone() }
     }
 }
 
 /// What threads beside the core tell the window through.
 struct Background {
-    outside: Sender<News>,
+    sender: Sender<News>,
     wake: Context,
 }
 
 impl Background {
     /// Runs a file dialog on a thread of its own, because some systems' dialogs block.
     fn run(&self, ask: impl FnOnce() -> Option<HostEvent> + Send + 'static) {
-        let (outside, wake) = (self.outside.clone(), self.wake.clone());
+        let (sender, wake) = (self.sender.clone(), self.wake.clone());
         thread::spawn(move || {
             if let Some(event) = ask() {
                 // No one listens any more when the window was closed meanwhile.
-                let _ = outside.send(News::Happened(event));
+                let _ = sender.send(News::Happened(event));
                 wake.request_repaint();
             }
         });
@@ -156,7 +156,7 @@ impl Host for NativeHost {
                 Some(LinkEvent::Restarted { message }) => return Some(HostEvent::CoreRestarted { message }),
                 None => {}
             }
-            match self.from_outside.try_recv() {
+            match self.receiver.try_recv() {
                 Ok(News::Core(core, news)) => self.link.hear(core, news),
                 Ok(News::Happened(event)) => return Some(event),
                 Err(_) => break,
@@ -202,7 +202,7 @@ impl Host for NativeHost {
     fn use_shelf(&mut self, request: ShelfRequest) {
         if let Some(news) = shelf::answer(self.shelf_folder().as_deref(), request) {
             // The window itself listens.
-            let _ = self.outside.send(News::Happened(HostEvent::Shelf(news)));
+            let _ = self.sender.send(News::Happened(HostEvent::Shelf(news)));
             self.wake.request_repaint();
         }
     }
@@ -269,11 +269,11 @@ fn save_asking(suggested_name: String, bytes: &[u8]) -> Option<HostEvent> {
 
 impl Transport for CoreThreads {
     fn start(&mut self, core: u32) {
-        let (outside, wake) = (self.outside.clone(), self.wake.clone());
+        let (sender, wake) = (self.sender.clone(), self.wake.clone());
         let superseded = Arc::new(AtomicBool::new(false));
         let host = ThreadHost {
             core,
-            outside,
+            sender,
             superseded: Arc::clone(&superseded),
             wake,
             begun: Instant::now(),
@@ -323,7 +323,7 @@ const ALIVE: Duration = Duration::from_secs(5);
 
 struct ThreadHost {
     core: u32,
-    outside: Sender<News>,
+    sender: Sender<News>,
     superseded: Arc<AtomicBool>,
     wake: Context,
     begun: Instant,
@@ -334,7 +334,7 @@ struct ThreadHost {
 impl ThreadHost {
     fn tell(&self, news: link::News) {
         // No one listens any more when the window was closed meanwhile.
-        let _ = self.outside.send(News::Core(self.core, news));
+        let _ = self.sender.send(News::Core(self.core, news));
         self.wake.request_repaint();
     }
 }

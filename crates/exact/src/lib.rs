@@ -21,6 +21,7 @@
 //! ```
 
 mod bound;
+mod counted;
 mod print;
 mod rational;
 mod read;
@@ -29,6 +30,7 @@ mod serial;
 mod time;
 
 pub use bound::{Bound, BoundError};
+pub use counted::counted;
 pub use rational::Rational;
 pub use read::ReadError;
 pub use scale::Scale;

@@ -343,8 +343,8 @@ impl Run<'_> {
         }
     }
 
-    /// What is first of that which may happen at one time. What the environment does is seen before the executive
-    /// continues, unless that is before it in the plan.
+    /// Returns what is first of that which may happen at one time. What the environment does is seen before the
+    /// executive continues, unless that is before it in the plan.
     fn first_of(&self, mut at_once: Vec<Next>) -> Option<Next> {
         let node = |next: &Next| self.stage.made.node(next.point);
         at_once.sort_by_key(|next| self.stage.rank(next.point));
@@ -356,7 +356,7 @@ impl Run<'_> {
         (first < at_once.len()).then(|| at_once.swap_remove(first))
     }
 
-    /// Whether the environment ends a duration at a node.
+    /// Returns whether the environment ends a duration at a node.
     fn is_natures(&self, node: NodeId) -> bool {
         let asked = self.stage.network.controllability != Controllability::None || self.adversary.is_some();
         asked && self.stage.natures.contains_key(&node)
@@ -388,7 +388,8 @@ impl Run<'_> {
         Ok(Some(ByWorld::At(at, News::Duration(occurrence, duration))))
     }
 
-    /// What decides when a node happens besides the plan, in order: nature's durations that end there, then its events.
+    /// Returns what decides when a node happens besides the plan, in order: nature's durations that end there, then its
+    /// events.
     fn deciders(&self, node: NodeId) -> Vec<Decider> {
         let arcs = self.stage.natures.get(&node).filter(|_| self.is_natures(node));
         let natures = arcs.into_iter().flatten().map(|&arc| Decider::Nature(arc));
@@ -419,13 +420,14 @@ impl Run<'_> {
         Ok(driven)
     }
 
-    /// Whether the world has decided when a point happens at the earliest, or that it does not.
+    /// Returns whether the world has decided when a point happens at the earliest, or that it does not.
     fn is_driven(&self, point: PointId) -> Result<bool, PlanError> {
         self.is_decided(point, |_| true)
     }
 
-    /// Whether the world has decided when a point happens, or that it does not, and the plan cannot delay it. The end of an
-    /// activity that waits when it is early, such as a drive that has arrived, does not count: the plan can delay it.
+    /// Returns whether the world has decided when a point happens, or that it does not, and the plan cannot delay it.
+    /// The end of an activity that waits when it is early, such as a drive that has arrived, does not count: the plan
+    /// can delay it.
     fn is_reported(&self, point: PointId) -> Result<bool, PlanError> {
         self.is_decided(point, |decider| match decider {
             Decider::Nature(_) => true,
@@ -436,7 +438,7 @@ impl Run<'_> {
         })
     }
 
-    /// Whether a decider that counts has decided when a point happens, or that it does not.
+    /// Returns whether a decider that counts has decided when a point happens, or that it does not.
     fn is_decided(&self, point: PointId, counts: impl Fn(&Decider) -> bool) -> Result<bool, PlanError> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);
@@ -457,7 +459,7 @@ impl Run<'_> {
         Ok(false)
     }
 
-    /// What happens to a node would happen at a time that does not fit.
+    /// Returns what happens to a node would happen at a time that does not fit.
     fn too_large(&self, node: NodeId) -> PlanError {
         PlanError::TooLate { event: self.stage.name(node) }
     }
@@ -523,11 +525,11 @@ impl Run<'_> {
                 self.stage.window(end).0.checked_sub(started).ok_or(Overflow)?
             }
         };
-        let late = match guide.greatest_after {
+        let late = match guide.max_after {
             Bound::Infinite => Time::ZERO,
             Bound::Finite(after) => duration.checked_sub(after).ok_or(Overflow)?,
         };
-        let after = guide.least_before.max(late).min(duration);
+        let after = guide.min_before.max(late).min(duration);
         Ok(Some(started.checked_add(after).ok_or(Overflow)?))
     }
 
@@ -544,7 +546,7 @@ impl Run<'_> {
         Next { point, time, violation: Some(Violation::new(name, reason, news)) }
     }
 
-    /// What the environment does against the executive, given what that would do next.
+    /// Returns what the environment does against the executive, given what that would do next.
     fn opposed(&self, adversary: &Adversary, best: Option<Next>) -> Result<Option<Next>, PlanError> {
         if best.as_ref().is_some_and(|best| best.violation.is_some()) {
             return Ok(best);

@@ -144,8 +144,8 @@ impl Stage {
         (self.made.time(earliest), (latest != NEVER).then(|| self.made.time(latest)))
     }
 
-    /// Whether everything that a node follows has happened. Where durations may be zero, the dispatchable form alone
-    /// would let an end come before its start.
+    /// Returns whether everything that a node follows has happened. Where durations may be zero, the dispatchable form
+    /// alone would let an end come before its start.
     pub(crate) fn is_next(&self, node: NodeId) -> bool {
         self.before[node.index()].iter().all(|before| self.times[before.index()].is_some())
     }
@@ -160,7 +160,7 @@ impl Stage {
         Arc::clone(&self.after)
     }
 
-    /// How many nodes each node follows that have not happened.
+    /// Returns how many nodes each node follows that have not happened.
     pub(crate) fn missing(&self) -> Vec<u32> {
         let count = |before: &Vec<NodeId>| {
             before.iter().filter(|before| self.times[before.index()].is_none()).count() as u32
@@ -168,8 +168,8 @@ impl Stage {
         self.before.iter().map(count).collect()
     }
 
-    /// Whether one event comes no later than another in every schedule that is left, as far as its arcs and orderings or
-    /// their windows say so.
+    /// Returns whether one event comes no later than another in every schedule that is left, as far as its arcs and
+    /// orderings or their windows say so.
     pub(crate) fn precedes(&self, one: NodeId, other: NodeId) -> bool {
         let window = |node: NodeId| self.made.point(node).map(|point| self.window(point));
         let by_windows = || match (window(one), window(other)) {
@@ -179,8 +179,8 @@ impl Stage {
         one == other || by_windows() || leads_to(&self.before, one, other)
     }
 
-    /// Whether one event happens before another in every schedule that is left (SPEC 10.4), as far as its arcs and orderings
-    /// or their windows say so.
+    /// Returns whether one event happens before another in every schedule that is left (SPEC 10.4), as far as its arcs
+    /// and orderings or their windows say so.
     pub(crate) fn happens_before(&self, one: NodeId, other: NodeId) -> bool {
         let window = |node: NodeId| self.made.point(node).map(|point| self.window(point));
         let (first, then) = (window(one), window(other));
@@ -197,7 +197,7 @@ impl Stage {
         &self.network.occurrences[event.occurrence.index()]
     }
 
-    /// What begins or ends with a node, of all that the plan selects.
+    /// Returns what begins or ends with a node, of all that the plan selects.
     pub(crate) fn events(&self, node: NodeId) -> impl Iterator<Item = EventRef> {
         let events = self.network.nodes[node.index()].events.iter().copied();
         events.filter(|&event| self.plan.has_event(&self.network, event))
@@ -237,7 +237,7 @@ impl Stage {
         Ok(())
     }
 
-    /// What is left of it when it is over.
+    /// Returns what is left of it when it is over.
     pub(crate) fn close(self) -> ExecutedPlan {
         ExecutedPlan { from: self.from, network: self.network, plan: self.plan, times: self.times }
     }
@@ -248,9 +248,9 @@ impl Stage {
 pub(crate) struct Guide {
     pub(crate) traverse: OccurrenceId,
     /// How long it takes at least from the start of the traverse.
-    pub(crate) least_before: Time,
+    pub(crate) min_before: Time,
     /// How long the rest takes at most.
-    pub(crate) greatest_after: Bound,
+    pub(crate) max_after: Bound,
 }
 
 impl Guide {
@@ -265,13 +265,13 @@ impl Guide {
         }
         let mut guides = BTreeMap::new();
         for (traverse, path) in paths {
-            let mut greatest_after = Bound::ZERO;
-            let mut least_before =
+            let mut max_after = Bound::ZERO;
+            let mut min_before =
                 Time::checked_sum(path.iter().map(|arc| arc.lower)).ok_or(PlanError::Overflow)?;
             for arc in path.iter().skip(1).rev() {
-                least_before = least_before.checked_sub(arc.lower).ok_or(PlanError::Overflow)?;
-                greatest_after = greatest_after.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
-                guides.insert(arc.from, Self { traverse, least_before, greatest_after });
+                min_before = min_before.checked_sub(arc.lower).ok_or(PlanError::Overflow)?;
+                max_after = max_after.checked_add(arc.upper).ok_or(PlanError::Overflow)?;
+                guides.insert(arc.from, Self { traverse, min_before, max_after });
             }
         }
         Ok(guides)
@@ -434,7 +434,7 @@ struct Group {
     follows: Vec<NodeId>,
 }
 
-/// Whether `to` follows `from`.
+/// Returns whether `to` follows `from`.
 fn leads_to(before: &[Vec<NodeId>], from: NodeId, to: NodeId) -> bool {
     let mut seen = vec![false; before.len()];
     let mut pending = vec![to];

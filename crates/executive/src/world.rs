@@ -102,7 +102,8 @@ impl Disturbance {
         }
     }
 
-    /// What is wrong with its numbers, if something is: times and durations are not negative, and shares are shares.
+    /// Returns what is wrong with its numbers, if something is: times and durations are not negative, and shares are
+    /// shares.
     pub fn problem(&self) -> Option<&'static str> {
         let is_share = |share: Rational| !share.is_negative() && share <= Rational::ONE;
         match self {
@@ -174,7 +175,7 @@ pub struct Script {
 }
 
 impl Script {
-    /// What is wrong with its numbers, if something is.
+    /// Returns what is wrong with its numbers, if something is.
     pub fn problem(&self) -> Option<&'static str> {
         let times = self.nature.values().chain(self.schedule.values());
         let mut problems = self.disturbances.iter().map(Disturbance::problem);
@@ -272,7 +273,7 @@ impl World {
         world
     }
 
-    /// What it makes of states and levels, in order of time.
+    /// Returns what it makes of states and levels, in order of time.
     pub fn changes(&self) -> &[WorldChange] {
         &self.changes
     }
@@ -313,7 +314,7 @@ impl World {
         (0..network.nodes.len()).map(time).collect()
     }
 
-    /// How long the schedule lets an occurrence take, if it has both of its events.
+    /// Returns how long the schedule lets an occurrence take, if it has both of its events.
     fn scheduled_duration(
         &self,
         network: &Network,
@@ -331,23 +332,23 @@ impl World {
         end.checked_sub(start).ok_or(Overflow).map(Some)
     }
 
-    /// Whether the environment is to make plans fail.
+    /// Returns whether the environment is to make plans fail.
     pub const fn is_adversary(&self) -> bool {
         self.is_adversary
     }
 
-    /// How long the environment makes something take that takes from `lower` to `upper`.
+    /// Returns how long the environment makes something take that takes from `lower` to `upper`.
     pub fn chosen(&self, occurrence: &Occurrence, [lower, upper]: [Time; 2]) -> Time {
         self.chosen.get(&occurrence.name).map_or(lower, |&chosen| chosen.min(upper).max(lower))
     }
 
-    /// How long ending an activity early takes, between the ends of a range.
+    /// Returns how long ending an activity early takes, between the ends of a range.
     pub fn abort_time(&self, occurrence: &Occurrence, [lower, upper]: [Time; 2]) -> Time {
         let chosen = self.chosen.get(&abort_name(occurrence));
         chosen.map_or(lower, |&chosen| chosen.min(upper).max(lower))
     }
 
-    /// How long an occurrence really takes, where that is not for the executive to decide.
+    /// Returns how long an occurrence really takes, where that is not for the executive to decide.
     pub fn duration(&self, network: &Network, occurrence: &Occurrence) -> Result<Option<Time>, Overflow> {
         if let Some(&duration) = self.durations.get(&occurrence.name) {
             return Ok(Some(duration));
@@ -361,7 +362,7 @@ impl World {
         let Some(factor) = self.slow.get(&occurrence.name).filter(|factor| factor.is_positive()) else {
             return Ok(None);
         };
-        let exact = least_drive(network, occurrence)?.checked_div(*factor).ok_or(Overflow)?;
+        let exact = min_drive(network, occurrence)?.checked_div(*factor).ok_or(Overflow)?;
         // Shares of any kind would make the ticks of a run finer without end.
         let whole = exact.integer_parts(SLOW_PARTS).and_then(|parts| Time::new(parts, i64::from(SLOW_PARTS)));
         let up = |whole: Time| {
@@ -436,7 +437,7 @@ pub fn natures_ranges(network: &Network) -> impl Iterator<Item = (&Occurrence, [
 }
 
 /// The least time for a traverse: its path at full speed, or its lower bound where it has none.
-pub fn least_drive(network: &Network, occurrence: &Occurrence) -> Result<Time, Overflow> {
+pub fn min_drive(network: &Network, occurrence: &Occurrence) -> Result<Time, Overflow> {
     let own = occurrence.arc.map_or(Time::ZERO, |arc| network.arcs[arc.index()].lower);
     let pieces = network
         .arcs

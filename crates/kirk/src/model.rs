@@ -153,7 +153,7 @@ impl Model {
             structure: None,
         };
         model.order = model.nesting_order();
-        model.gap_after = model.conditions.labels.keys().map(|label| model.least_gap_after(label)).collect();
+        model.gap_after = model.conditions.labels.keys().map(|label| model.min_gap_after(label)).collect();
         model.has_contexts = model.find_contexts(network);
         if model.has_contexts && model.arcs.iter().all(|arc| arc.to != model.start) {
             model.structure = Structure::new(network, &model)?;
@@ -167,7 +167,7 @@ impl Model {
         (changed.lower, changed.upper) = (lower, upper);
         changed.is_tie = !changed.is_uncertain && (lower, upper) == (0, 0);
         for &label in &network.arcs[arc.index()].labels {
-            self.gap_after[label] = self.least_gap_after(label);
+            self.gap_after[label] = self.min_gap_after(label);
         }
     }
 
@@ -210,7 +210,7 @@ impl Model {
         (point(arc.from), point(if label.is_at_start { arc.from } else { arc.to }))
     }
 
-    /// Whether two contexts can be in one plan.
+    /// Returns whether two contexts can be in one plan.
     pub(crate) fn are_compatible(&self, mut left: Context, mut right: Context) -> bool {
         while let (Some(one), Some(other)) = (left, right) {
             if one.decision == other.decision {
@@ -226,7 +226,7 @@ impl Model {
         true
     }
 
-    /// Whether whatever has a context is in no plan without what has another one around it.
+    /// Returns whether whatever has a context is in no plan without what has another one around it.
     pub(crate) fn is_within(&self, mut inner: Context, outer: Context) -> bool {
         while inner != outer {
             let Some(choice) = inner else { return false };
@@ -235,29 +235,29 @@ impl Model {
         true
     }
 
-    /// Whether an arc is a bound between threads.
+    /// Returns whether an arc is a bound between threads.
     pub(crate) fn is_constraint(&self, arc: ArcId) -> bool {
         self.constraints.binary_search(&arc).is_ok()
     }
 
-    /// Whether a bound between threads begins or ends at an event.
+    /// Returns whether a bound between threads begins or ends at an event.
     pub(crate) fn is_constrained(&self, node: NodeId) -> bool {
         self.constraints.iter().any(|&arc| self.arcs[arc].from == node || self.arcs[arc].to == node)
     }
 
-    /// Whether two labels can be in one plan.
+    /// Returns whether two labels can be in one plan.
     pub(crate) fn can_be_together(&self, left: LabelId, right: LabelId) -> bool {
         let context = |label: LabelId| self.arcs[self.conditions.labels[label].arc].context;
         self.are_compatible(context(left), context(right))
     }
 
-    /// Whether the solver's own solutions become plans, so that all of them count.
+    /// Returns whether the solver's own solutions become plans, so that all of them count.
     pub(crate) fn tells_plans_apart(&self) -> bool {
         self.has_uncertainty || self.demands.tells_alternatives_apart()
     }
 
-    /// How the program's structure orders the arcs of two labels, if one of them takes time, so that they cannot be in
-    /// the other order as well.
+    /// Returns how the program's structure orders the arcs of two labels, if one of them takes time, so that they
+    /// cannot be in the other order as well.
     pub(crate) fn nested_order(&self, left: LabelId, right: LabelId) -> Relation {
         let arc = |label: LabelId| self.conditions.labels[label].arc;
         let takes_time = self.arcs[arc(left)].lower > 0 || self.arcs[arc(right)].lower > 0;
@@ -267,7 +267,7 @@ impl Model {
         }
     }
 
-    /// What a node is in networks that have one point for all nodes with one representative.
+    /// Returns what a node is in networks that have one point for all nodes with one representative.
     pub(crate) fn representative(&self, node: NodeId) -> PointId {
         point(self.representatives[node])
     }
@@ -279,7 +279,7 @@ impl Model {
         if self.natures_events[start] { 0 } else { gap }
     }
 
-    fn least_gap_after(&self, label: LabelId) -> i64 {
+    fn min_gap_after(&self, label: LabelId) -> i64 {
         let label = &self.conditions.labels[label];
         let arc = &self.arcs[label.arc];
         if label.is_at_start || (arc.lower == 0 && arc.upper == 0) { self.gap } else { 0 }
@@ -311,8 +311,8 @@ impl Model {
         order
     }
 
-    /// Where the alternatives of each decision come together again, in a network that has no blocks. `None` if some of them
-    /// do so before all do.
+    /// Returns where the alternatives of each decision come together again, in a network that has no blocks. `None` if
+    /// some of them do so before all do.
     fn found_merges(&self) -> Option<TiVec<DecisionId, NodeId>> {
         let mut waiting: TiVec<NodeId, u32> = vec![0; self.num_nodes].into();
         let leads_on = |arc: ArcId| self.arcs[arc].to != self.start;
@@ -443,7 +443,7 @@ impl Model {
     }
 }
 
-/// What a node is in networks that have one point for each node.
+/// Returns what a node is in networks that have one point for each node.
 pub(crate) const fn point(node: NodeId) -> PointId {
     PointId(node.0)
 }
@@ -453,7 +453,7 @@ pub(crate) const fn node(point: PointId) -> NodeId {
     NodeId(point.0)
 }
 
-/// Where the choices of a network that was compiled from a program end.
+/// Returns where the choices of a network that was compiled from a program end.
 fn merges_of_blocks(network: &Network) -> Option<TiVec<DecisionId, NodeId>> {
     let mut merges: TiVec<DecisionId, Option<NodeId>> = vec![None; network.decisions.len()].into();
     for block in &network.blocks {

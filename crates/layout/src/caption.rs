@@ -1,5 +1,6 @@
 //! What the boxes of folded blocks say.
 
+use exact::counted;
 use std::collections::BTreeSet;
 
 use display::Measure;
@@ -87,10 +88,10 @@ pub(crate) fn captions(
             (name, options.longest_name.min(LONGEST_SUMMARY))
         };
         let title = cut_to_width(&name.unwrap_or_default(), TextRole::Title, longest, measure);
-        let events = counted(contents.events(&ends) as usize, "event");
+        let events = counted(contents.events(&ends), "event");
         let detail = match arc.map(|arc| &network.arcs[arc.index()]) {
             Some(arc) => format_smolstr!("{} · {events}", arc_bounds_label(arc)),
-            None => events,
+            None => events.into(),
         };
         let line = |text: SmolStr, role: TextRole| {
             let size = options.text_size(role);
@@ -131,20 +132,16 @@ fn what_is_inside(network: &Network, blocks: &[Block]) -> Option<SmolStr> {
     let names =
         vehicles.iter().filter_map(|variable| network.variables[variable.index()].name.strip_suffix(".at"));
     let names: Vec<&str> = names.collect();
-    let mut told = Vec::new();
+    let mut told: Vec<SmolStr> = Vec::new();
     match names.as_slice() {
         [] => {}
-        names if names.len() > MAX_VEHICLES => told.push(counted(names.len(), "vehicle")),
+        names if names.len() > MAX_VEHICLES => told.push(counted(names.len(), "vehicle").into()),
         names => told.push(names.join(", ").into()),
     }
     if decisions > 0 {
-        told.push(counted(decisions, "decision"));
+        told.push(counted(decisions, "decision").into());
     }
     (!told.is_empty()).then(|| told.join(" · ").into())
-}
-
-fn counted(count: usize, what: &str) -> SmolStr {
-    if count == 1 { format_smolstr!("1 {what}") } else { format_smolstr!("{count} {what}s") }
 }
 
 /// The first and the last activity behind a box, or what is asserted there if there is none.

@@ -204,7 +204,7 @@ impl<T: Transport> Link<T> {
             && self.queue.under_way().is_some()
             && now_secs - self.heard_secs >= SILENCE_SECS;
         if is_silent {
-            self.fail(format!("it said nothing for {SILENCE_SECS} seconds"));
+            self.fail(format!("no response for {SILENCE_SECS} seconds"));
         }
     }
 
@@ -221,7 +221,7 @@ impl<T: Transport> Link<T> {
         self.events.pop_front()
     }
 
-    /// Whether the core has something to do.
+    /// Returns whether the core has something to do.
     pub fn is_busy(&self) -> bool {
         self.queue.under_way().is_some()
     }
@@ -231,12 +231,12 @@ impl<T: Transport> Link<T> {
         Some(self.queue.under_way()?.request.source()?.text())
     }
 
-    /// Which core is spoken to, from 1.
+    /// Returns which core is spoken to, from 1.
     pub const fn core(&self) -> u32 {
         self.cores
     }
 
-    /// What carries the jobs.
+    /// Returns what carries the jobs.
     pub const fn transport(&mut self) -> &mut T {
         &mut self.transport
     }

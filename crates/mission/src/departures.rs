@@ -100,12 +100,12 @@ impl<'mission> Departures<'mission> {
         departures
     }
 
-    /// Whether the order of movements decides where some vehicle stands.
+    /// Returns whether the order of movements decides where some vehicle stands.
     pub(crate) fn are_open(&self) -> bool {
         self.movements.iter().any(|movement| movement.places.iter().any(|it| it.is_open && it.is_reached))
     }
 
-    /// Whether a path has told how long a route takes.
+    /// Returns whether a path has told how long a route takes.
     pub(crate) fn knows(&self, route: &Route) -> bool {
         route.from.is_none() || self.known_of(route).is_some()
     }
@@ -158,17 +158,18 @@ impl<'mission> Departures<'mission> {
         is_lower.then(|| self.route(movement, ends.from, ends.to)).flatten()
     }
 
-    /// What the search for an order assumes: that each leg takes what its quickest known path does.
+    /// Returns what the search for an order assumes: that each leg takes what its quickest known path does.
     pub(crate) fn assumed(&self) -> Vec<Departure> {
         self.listed(|movement, place| self.assumed_of(movement, place).least)
     }
 
-    /// What holds wherever vehicles stand.
+    /// Returns what holds wherever vehicles stand.
     pub(crate) fn bounds(&self) -> Vec<Departure> {
         self.listed(|movement, place| self.bounds_of(movement, place).least)
     }
 
-    /// What is known of these routes, each of which starts where it does and nowhere else; bounds for all others.
+    /// Returns what is known of these routes, each of which starts where it does and nowhere else; bounds for all
+    /// others.
     pub(crate) fn only(&self, routes: &[Route]) -> Vec<Departure> {
         self.listed(|movement, place| {
             let Some(route) = routes.iter().find(|route| route.occurrence == movement.occurrence) else {
@@ -183,17 +184,18 @@ impl<'mission> Departures<'mission> {
         })
     }
 
-    /// How many meters each movement is assumed to drive from each place: of several paths of one leg, the longest.
+    /// Returns how many meters each movement is assumed to drive from each place: of several paths of one leg, the
+    /// longest.
     pub(crate) fn assumed_distances(&self) -> Vec<Distance> {
         self.distances(|movement, place| self.assumed_of(movement, place).meters)
     }
 
-    /// How many meters each movement drives at least from each place, wherever vehicles stand.
+    /// Returns how many meters each movement drives at least from each place, wherever vehicles stand.
     pub(crate) fn distance_bounds(&self) -> Vec<Distance> {
         self.distances(|movement, place| self.bounds_of(movement, place).meters)
     }
 
-    /// How many meters these routes drive, and bounds for all others.
+    /// Returns how many meters these routes drive, and bounds for all others.
     pub(crate) fn distances_of(&self, routes: &[Route]) -> Vec<Distance> {
         self.distances(|movement, place| {
             let is_its = |route: &&Route| {
@@ -204,7 +206,7 @@ impl<'mission> Departures<'mission> {
         })
     }
 
-    /// Whether what is assumed holds wherever vehicles stand.
+    /// Returns whether what is assumed holds wherever vehicles stand.
     pub(crate) fn is_bounded_as_assumed(&self) -> bool {
         self.movements.iter().all(|movement| {
             let mut reached = movement.places.iter().filter(|place| place.is_open && place.is_reached);
@@ -212,8 +214,8 @@ impl<'mission> Departures<'mission> {
         })
     }
 
-    /// How many meters each movement drives at least, wherever it starts.
-    pub(crate) fn least_meters(&self) -> BTreeMap<OccurrenceId, Rational> {
+    /// Returns how many meters each movement drives at least, wherever it starts.
+    pub(crate) fn min_meters(&self) -> BTreeMap<OccurrenceId, Rational> {
         let least = |movement: &Movement| {
             let reached = movement.places.iter().filter(|place| place.is_reached);
             let meters = reached.filter_map(|place| self.bounds_of(movement, place).meters).min()?;
@@ -240,7 +242,7 @@ impl<'mission> Departures<'mission> {
         let open = pairs(movement, &from, &to).filter(|ends| !is_known(known, ends));
         let open: Vec<Bounds> = open.map(|ends| self.straight(movement, &ends)).collect();
         let known = known.iter().map(|known| Bounds { least: known.least, meters: known.meters });
-        self.nearer(movement, least_of(known.chain(open)), place.behind_m)
+        self.nearer(movement, min_of(known.chain(open)), place.behind_m)
     }
 
     /// Bounds of a movement that may start so many meters nearer to its goal.
@@ -322,7 +324,7 @@ impl<'mission> Departures<'mission> {
                 value,
                 is_reached: !self.spots.before(occurrence, leader, &middle).is_empty(),
                 is_open: from.len() > 1 || to.len() > 1 || behind_m > 0.0,
-                straight: self.nearer(&movement, least_of(straights), behind_m),
+                straight: self.nearer(&movement, min_of(straights), behind_m),
                 behind_m,
                 middle,
             };
@@ -331,7 +333,7 @@ impl<'mission> Departures<'mission> {
         Some(movement)
     }
 
-    /// Where a movement may start at a location, and where it may end.
+    /// Returns where a movement may start at a location, and where it may end.
     fn ends(&self, movement: &Movement, at: &Waypoint) -> (Vec<Waypoint>, Vec<Waypoint>) {
         (self.before(movement, at), self.after(movement))
     }
@@ -362,7 +364,7 @@ impl<'mission> Departures<'mission> {
         Some(route)
     }
 
-    /// What a movement takes along straight lines.
+    /// Returns what a movement takes along straight lines.
     fn straight(&self, movement: &Movement, ends: &Ends<'_>) -> Bounds {
         let named = &movement.route.waypoints;
         let [from_m, to_m] = ends.free_m;
@@ -429,8 +431,8 @@ fn is_known(known: &[Known], ends: &Ends<'_>) -> bool {
     known.iter().any(|known| known.ends_m() == Some([ends.from.position_m, ends.to.position_m]))
 }
 
-/// What all of some ways take at least.
-fn least_of(ways: impl IntoIterator<Item = Bounds>) -> Bounds {
+/// Returns what all of some ways take at least.
+fn min_of(ways: impl IntoIterator<Item = Bounds>) -> Bounds {
     let (mut least, mut meters) = (None, None);
     for way in ways {
         least = [least, way.least].into_iter().flatten().min();
@@ -439,7 +441,7 @@ fn least_of(ways: impl IntoIterator<Item = Bounds>) -> Bounds {
     Bounds { least, meters }
 }
 
-/// How many meters of a route were counted when its plan was chosen: the most that any planned path of it has.
+/// Returns how many meters of a route were counted when its plan was chosen: the most that any planned path of it has.
 pub(crate) fn counted_m(network: &Network, route: &Route) -> f64 {
     let is_its = |distance: &&tpn::Distance| {
         let arrival = &network.labels[distance.arrival.index()];

@@ -5,12 +5,13 @@
 //! Plans with the same choices and the same ways share one planning again.
 
 use snapshot::vehicle;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use kirk::{Options, Stats, Status};
 use smol_str::SmolStr;
 use snapshot::LeftOut;
+use tpn::exchange::{Distinction, Exchanges};
 use tpn::worth;
 use tpn::{Choice, Network, OccurrenceId, Plan};
 
@@ -30,7 +31,7 @@ pub struct Listed {
 /// Ways to drive that are looked at, at most: each combination of choices and ways of all its traverses is one.
 const MAX_WAYS: usize = 64;
 
-/// Whether the plans that `problem` asks for are listed here: those of missions that move vehicles over ground.
+/// Returns whether the plans that `problem` asks for are listed here: those of missions that move vehicles over ground.
 pub(crate) fn is_listing(problem: &Problem<'_>) -> bool {
     let options = &problem.options;
     let is_moving = |occurrence| vehicle::moving(problem.program, occurrence).is_some();
@@ -64,15 +65,16 @@ pub(crate) fn add_plans(
         is_cut: found.status == Status::Limit,
         left_out: Vec::new(),
     };
-    let first = planned.planning.outcome.plans.first().cloned();
+    let exchanges = Exchanges::new(&relaxed);
+    let first = planned.planning.outcome.plans.first();
+    let mut known: BTreeSet<Distinction> = first.iter().map(|plan| exchanges.least(plan)).collect();
     let mut listed: Vec<Listed> = Vec::new();
     for plan in &found.plans {
         if stop() {
             listing.is_cut = true;
             break;
         }
-        let mut known = first.iter().chain(listed.iter().map(|listed| &listed.plan));
-        if known.any(|known| known.is_same(plan)) {
+        if !known.insert(exchanges.least(plan)) {
             continue;
         }
         match listing.driven(plan, grounds, paths, stop) {
@@ -207,7 +209,7 @@ impl Listing<'_, '_> {
 /// That there is no time for some drives, and how much each of them takes.
 fn no_time(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -> String {
     let least = |it: &Inserted| {
-        let least = planning::least_duration(problem, &it.route, it.legs.as_ref().ok()?)?;
+        let least = planning::min_duration(problem, &it.route, it.legs.as_ref().ok()?)?;
         let name = &problem.network.occurrences[it.route.occurrence.index()].name;
         Some(format!("{name} takes at least {:.1}", least.to_f64()))
     };

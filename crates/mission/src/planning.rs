@@ -158,7 +158,7 @@ impl Inserted {
     }
 }
 
-/// Whether the paths of a route are known, from where it starts.
+/// Returns whether the paths of a route are known, from where it starts.
 pub(crate) fn is_inserted(route: &Route, inserted: &BTreeMap<OccurrenceId, Inserted>) -> bool {
     inserted.get(&route.occurrence).is_some_and(|known| known.route.waypoints == route.waypoints)
 }
@@ -266,13 +266,13 @@ fn plan_paths(
     shortest
 }
 
-/// Whether planning finds where movements start, or meters count.
+/// Returns whether planning finds where movements start, or meters count.
 fn is_by_departure(problem: &Problem<'_>) -> bool {
     let is_open = kirk::has_open_order(problem.network) || problem.network.counts_meters();
     problem.ground.is_some() && is_open
 }
 
-/// Whether some movement takes of a resource for each meter.
+/// Returns whether some movement takes of a resource for each meter.
 fn takes_for_meters(network: &Network) -> bool {
     network.uses.iter().any(|used| used.change == Change::Consumes && used.per_meter.is_positive())
 }
@@ -401,7 +401,7 @@ fn admit_other_spots(
     }
 }
 
-/// What a plan promises for each goal by what is known of movements, if none is better.
+/// Returns what a plan promises for each goal by what is known of movements, if none is better.
 fn promised_values(problem: &Problem<'_>, asked: &Network, plan: &Plan) -> Option<Vec<Rational>> {
     let routes = traverse::routes(asked, problem.program, plan, places(problem));
     let meters: f64 = routes.iter().map(|route| departures::counted_m(asked, route)).sum();
@@ -437,7 +437,7 @@ fn hold_against(
     }
 }
 
-/// Whether a value of a goal is as good as its bound, in which what each of so many movements takes is rounded.
+/// Returns whether a value of a goal is as good as its bound, in which what each of so many movements takes is rounded.
 fn is_as_good(goal: &Goal, value: Rational, bound: Rational, movements: usize) -> bool {
     let factors: f64 = goal.terms.iter().map(|(factor, _)| factor.to_f64().abs()).sum();
     let rounding = factors * ROUNDING * (movements + 1) as f64;
@@ -536,7 +536,7 @@ fn order_movements<'input>(
         if !problem.network.objective.is_empty() && takes_for_meters(problem.network) {
             // What movements take at least tells what is worth driving to; what is too much is explained with real meters.
             let mut counted = asked.as_ref().clone();
-            count_least_meters(&mut counted, &departures);
+            count_min_meters(&mut counted, &departures);
             let quietly = Options { explain: false, ..options };
             let outcome = problem.searched(&Arc::new(counted), &quietly, stop);
             counting = (!outcome.plans.is_empty()).then_some(outcome);
@@ -630,7 +630,7 @@ fn search_bounds(
     for round in 1.. {
         let distances = || departures.distance_bounds();
         let (network, mut asked) = asked(problem, departures.bounds(), distances, tried);
-        count_least_meters(Arc::make_mut(&mut asked), departures);
+        count_min_meters(Arc::make_mut(&mut asked), departures);
         let outcome = problem.searched(&asked, &options, stop);
         num_decisions += outcome.stats.expanded;
         let is_last = round == MAX_BOUND_SEARCHES || num_decisions > MAX_BOUND_DECISIONS || stop();
@@ -679,14 +679,14 @@ fn learn_inserted(
 
 /// Learns how long a route takes with these legs, or that it cannot be driven.
 fn learn(problem: &Problem<'_>, departures: &mut Departures<'_>, route: &Route, legs: Option<&Vec<Leg>>) {
-    let least = legs.and_then(|legs| least_duration(problem, route, legs));
+    let least = legs.and_then(|legs| min_duration(problem, route, legs));
     let length_m = legs.map(|legs| snapshot::joined(legs).length_m());
     departures.learn(route, least, length_m.and_then(rounded_up));
 }
 
 /// Adds what movements take of resources for each meter, wherever their vehicles stand.
-fn count_least_meters(network: &mut Network, departures: &Departures<'_>) {
-    let least = departures.least_meters();
+fn count_min_meters(network: &mut Network, departures: &Departures<'_>) {
+    let least = departures.min_meters();
     for used in network.uses.iter_mut().filter(|used| used.change == Change::Consumes) {
         let meters = used.owner.and_then(|owner| least.get(&owner));
         let more = meters.and_then(|&meters| used.per_meter.checked_mul(meters));
@@ -699,13 +699,13 @@ fn counted(problem: &Problem<'_>, distances: impl FnOnce() -> Vec<Distance>) -> 
     if problem.network.counts_meters() { distances() } else { Vec::new() }
 }
 
-/// Where vehicles stand that have stopped on their way.
+/// Returns where vehicles stand that have stopped on their way.
 pub(crate) fn places<'input>(problem: &Problem<'input>) -> &'input [StandingPlace] {
     problem.facts.map_or(&[], |facts| &facts.places)
 }
 
 /// The least time that the legs of a route take; nothing where that does not fit, which its own bounds then decide.
-pub(crate) fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<Time> {
+pub(crate) fn min_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg]) -> Option<Time> {
     let unit_seconds = problem.program.options.time_unit.seconds();
     let Some(path) = traverse_path(route, legs, problem.ground?.1) else { return Some(Time::ZERO) };
     let segments = tpn::path::segment_bounds(&path, unit_seconds).unwrap_or_default();
@@ -792,7 +792,7 @@ fn found_legs(
     }
 }
 
-/// Where the vehicles of a route can be.
+/// Returns where the vehicles of a route can be.
 pub(crate) fn space(
     problem: &Problem<'_>,
     (key, map): (&MapKey, &Arc<Terrain>),
@@ -851,7 +851,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 fn count_meters(network: &mut Network, route: &Route, length_m: f64, rocks: HiddenRocks) {
     let at_most_m = motion::driven_at_most_m(length_m, route.company, rocks);
     let (Some(meters), Some(at_most)) = (rounded_up(length_m), rounded_up(at_most_m)) else { return };
-    let at_least = motion::driven_at_least_m(length_m, route.company, rocks);
+    let at_least = motion::min_driven_m(length_m, route.company, rocks);
     let at_least = rounded_up(at_least).unwrap_or_default();
     let with = |amount: Rational, per_meter: Rational, meters: Rational| {
         per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
@@ -866,7 +866,7 @@ fn count_meters(network: &mut Network, route: &Route, length_m: f64, rocks: Hidd
     }
 }
 
-/// How many rocks a route may meet that its map does not show. What flies is above them.
+/// Returns how many rocks a route may meet that its map does not show. What flies is above them.
 pub(crate) fn hidden_rocks(world: &World, route: &Route, map: &Terrain) -> HiddenRocks {
     let drives = route.vehicles.iter().any(|&vehicle| !vehicle::flies(world, vehicle as u32));
     if world.terrain.is_some() && drives { HiddenRocks::on(map) } else { HiddenRocks::None }
@@ -891,7 +891,7 @@ fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraverseP
     (!path.legs.is_empty()).then_some(path)
 }
 
-/// What the segments of a leg take; `heading` is how the leader faces before it.
+/// Returns what the segments of a leg take; `heading` is how the leader faces before it.
 fn timings(route: &Route, leg: &Leg, map: &Terrain, heading: Option<f64>) -> Vec<SegmentTiming> {
     let [min_mps, max_mps] = [route.speed_mps.0, route.speed_mps.1].map(Rational::to_f64);
     let path = motion::Path::new(leg.points_m.clone());
@@ -902,7 +902,7 @@ fn timings(route: &Route, leg: &Leg, map: &Terrain, heading: Option<f64>) -> Vec
     }
 }
 
-/// Why a traverse can't be driven within its own bounds (SPEC 7.3), if so.
+/// Returns why a traverse can't be driven within its own bounds (SPEC 7.3), if so.
 fn out_of_bounds(problem: &Problem<'_>, route: &Route, legs: &[Leg], map: &Terrain) -> Option<Undrivable> {
     let arc = problem.network.occurrences[route.occurrence.index()].arc?;
     let (lower, upper) = {
@@ -932,7 +932,7 @@ fn out_of_bounds(problem: &Problem<'_>, route: &Route, legs: &[Leg], map: &Terra
     Some(Undrivable { occurrence: route.occurrence, leg: 0, reason })
 }
 
-/// What the legs of a traverse come to.
+/// Returns what the legs of a traverse come to.
 fn figures(
     problem: &Problem<'_>,
     route: &Route,
@@ -951,8 +951,8 @@ fn figures(
             length_m: path.legs.get(index).map_or(0.0, |leg| leg.segment_lengths_m.iter().sum()),
             min_clearance_m: traverse::clearance_m(space, &leg.points_m),
             max_slope_deg: map.steepest_slope_rad(&leg.points_m).to_degrees(),
-            least_duration: least.unwrap_or_default(),
-            greatest_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
+            min_duration: least.unwrap_or_default(),
+            max_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
         }
     };
     legs.iter().enumerate().map(of_leg).collect()
@@ -1065,7 +1065,8 @@ pub(crate) fn conclude(
     }
 }
 
-/// Where the vehicles are that move, and where those stay that do not: others have to keep apart from these as well.
+/// Returns where the vehicles are that move, and where those stay that do not: others have to keep apart from these as
+/// well.
 fn with_parked(
     mut motions: Vec<VehicleMotion>,
     starts: &[Option<Start>],
@@ -1085,7 +1086,7 @@ fn with_parked(
     motions
 }
 
-/// Where the vehicles are over time when `plan` is driven along the traverses of `planned`.
+/// Returns where the vehicles are over time when `plan` is driven along the traverses of `planned`.
 pub fn motions_of(
     program: &Program,
     network: &Network,
@@ -1147,7 +1148,7 @@ pub fn horizon(plan: &Plan) -> Time {
         .unwrap_or_default()
 }
 
-/// Whether an outcome has a plan.
+/// Returns whether an outcome has a plan.
 pub fn has_plan(outcome: &Outcome) -> bool {
     outcome.status == Status::Plan && !outcome.plans.is_empty()
 }

@@ -285,12 +285,14 @@ impl<'run> ProgramExecutor<'run> {
             let holder = moment.holder(active).filter(|_| active.program.steps == 0);
             told.ends = Ends::Never(match holder {
                 Some(holder) => format!("its program waits for that of {}, which has not ended", holder.name),
-                None => format!("its program did not end within {} steps", active.program.steps),
+                None => {
+                    format!("its program did not end within {}", exact::counted(active.program.steps, "step"))
+                }
             });
         }
     }
 
-    /// How the modes that the mission reads are estimated to change after `now`, by moments from `first` on.
+    /// Returns how the modes that the mission reads are estimated to change after `now`, by moments from `first` on.
     fn readings(&self, network: &Network, first: usize, now: Time) -> Vec<PlantReading> {
         let variables = network.variables.iter();
         let read: Vec<(&SmolStr, &str)> =
@@ -383,7 +385,7 @@ impl ActivityExecutor for ProgramExecutor<'_> {
     }
 }
 
-/// Why no program continues after a step, if nothing explains what was observed in it.
+/// Returns why no program continues after a step, if nothing explains what was observed in it.
 fn unexplained(model: &Model, outcome: &StepOutcome) -> Option<String> {
     match outcome {
         StepOutcome::Explained => None,
@@ -414,7 +416,7 @@ fn faults(disturbances: &[Disturbance], running: &[Active]) -> StepInput {
     input
 }
 
-/// What a step of a program did, in words: its commands, then what is found out.
+/// Returns what a step of a program did, in words: its commands, then what is found out.
 fn text(active: &Active, step: &LoopStep, chosen: &[RewardChoice], input: &StepInput) -> String {
     let model: &Model = &active.program.system.model;
     let mut own = step.commands.clone();

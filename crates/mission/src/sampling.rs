@@ -137,7 +137,7 @@ impl Sampler {
         self.count(&ran, contact, number, tally)
     }
 
-    /// What the environment chooses in the run of a seed.
+    /// Returns what the environment chooses in the run of a seed.
     fn chosen(&self, seed: u64) -> Result<BTreeMap<SmolStr, Time>, PlanError> {
         let named = |occurrence: &Occurrence| {
             self.natures
@@ -148,7 +148,7 @@ impl Sampler {
         Ok(nature::choose(&self.network, seed, self.nature, &named)?)
     }
 
-    /// What goes otherwise than planned in run `number`.
+    /// Returns what goes otherwise than planned in run `number`.
     pub fn draw(&self, seed: u64, number: u64) -> Result<Vec<Disturbance>, PlanError> {
         let mut random = Random::new(run_seed(seed, number));
         let mut drawn = Vec::new();
@@ -307,7 +307,7 @@ fn with_assumed(program: &Program, network: &Arc<Network>, uncertainty: &Uncerta
     Arc::new(changed)
 }
 
-/// How long each activity takes that is left to chance.
+/// Returns how long each activity takes that is left to chance.
 fn durations(
     network: &Network,
     uncertainty: &Uncertainty,
@@ -341,7 +341,7 @@ fn durations(
         .collect()
 }
 
-/// What is said of durations that the environment chooses: by the name of the occurrence, or without its count.
+/// Returns what is said of durations that the environment chooses: by the name of the occurrence, or without its count.
 fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
     natures_ranges(network)
         .map(|(occurrence, [lower, upper])| {
@@ -351,7 +351,7 @@ fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distri
         .collect()
 }
 
-/// What is said of the duration of an occurrence that the environment chooses.
+/// Returns what is said of the duration of an occurrence that the environment chooses.
 fn said_of(occurrence: &Occurrence, uncertainty: &Uncertainty) -> Option<Distribution> {
     let said = &uncertainty.durations;
     let named = said.get(&occurrence.name).or_else(|| said.get(&occurrence.activity));
@@ -363,11 +363,11 @@ fn by_bounds(network: &Network, id: OccurrenceId) -> Option<Distribution> {
     let occurrence = network.occurrences.get(id.index())?;
     let arc = network.arcs.get(occurrence.arc?.index())?;
     let Bound::Finite(upper) = arc.upper else { return None };
-    let lower = arc.lower.max(executive::world::least_drive(network, occurrence).ok()?);
+    let lower = arc.lower.max(executive::world::min_drive(network, occurrence).ok()?);
     (lower < upper && !is_watched(network, id)).then_some(Distribution::Uniform(lower, upper))
 }
 
-/// Whether an activity is the body of a `watching`, or inside one: then it asserts that its condition is false.
+/// Returns whether an activity is the body of a `watching`, or inside one: then it asserts that its condition is false.
 fn is_watched(network: &Network, id: OccurrenceId) -> bool {
     let ancestors: Vec<OccurrenceId> =
         std::iter::successors(Some(id), |at| network.occurrences.get(at.index())?.parent)

@@ -48,7 +48,7 @@ impl SavedState {
             it.kind == OccurrenceKind::Primitive && has_come(it.start) && !has_come(it.end)
         });
         if let Some(activity) = under_way {
-            return Err(format!("{} is under way at the end of the run", activity.name));
+            return Err(format!("{} is in progress at the end of the run", activity.name));
         }
         let world = &program.world;
         let states = program.variables.iter().filter(|it| !it.is_from_plant);
@@ -100,7 +100,7 @@ impl SavedState {
         Ok(saved)
     }
 
-    /// What the mission does not declare, in words.
+    /// Returns what the mission does not declare, in words.
     pub fn undeclared(&self, program: &Program) -> Option<String> {
         for (name, value) in &self.states {
             let declared = program.variables.iter().find(|it| it.name.text == *name);
@@ -178,7 +178,7 @@ fn place_variable(vehicle: &str) -> SmolStr {
     format_smolstr!("{vehicle}.at")
 }
 
-/// Where the vehicle with this index was when its last drive ended.
+/// Returns where the vehicle with this index was when its last drive ended.
 fn position(drives: &[SimulatedDrive], vehicle: usize) -> Option<[f64; 2]> {
     let driven = drives.iter().flat_map(|drive| &drive.vehicles).filter(|it| it.vehicle as usize == vehicle);
     let frames = driven.filter_map(|it| it.frames.last());

@@ -155,7 +155,8 @@ struct PartBox {
 }
 
 impl PartBox {
-    /// Whether this part and one of another vehicle, which begins no farther west, overlap from south to north and are no one movement.
+    /// Returns whether this part and one of another vehicle, which begins no farther west, overlap from south to north
+    /// and are no one movement.
     fn may_meet(&self, other: &Self) -> bool {
         self.part.0 != other.part.0
             && self.flies == other.flies
@@ -165,7 +166,8 @@ impl PartBox {
     }
 }
 
-/// How near each pair of vehicles comes: in the earliest schedule, or in another one where that has nothing to say.
+/// Returns how near each pair of vehicles comes: in the earliest schedule, or in another one where that has nothing to
+/// say.
 pub(crate) fn violations(meetings: &[Meeting]) -> Vec<SeparationViolation> {
     let mut of_pairs: BTreeMap<[u32; 2], &SeparationViolation> = BTreeMap::new();
     for meeting in meetings {
@@ -205,7 +207,7 @@ pub(crate) fn warnings(
         .collect()
 }
 
-/// What each vehicle does from the start of the plan to its end, in order.
+/// Returns what each vehicle does from the start of the plan to its end, in order.
 fn parts(
     (drives, tracks): (&[Drive], Vec<Vec<Vec<Place>>>),
     motions: &[VehicleMotion],
@@ -215,7 +217,7 @@ fn parts(
     let mut parts: BTreeMap<u32, Vec<Part>> = BTreeMap::new();
     let mut stands: BTreeMap<u32, (NodeId, Point2<f64>)> = BTreeMap::new();
     let starts = standing::starts(program, &network.occurrences);
-    let paths = least_of_paths(network);
+    let paths = min_of_paths(network);
     for (drive, tracks) in drives.iter().zip(tracks) {
         let of = &network.occurrences[drive.occurrence.index()];
         let bounds = of.arc.map_or(0.0, |arc| network.arcs[arc.index()].lower.to_f64());
@@ -250,8 +252,8 @@ fn parts(
     parts
 }
 
-/// How long the path of each traverse takes at least in every schedule, in mission units.
-fn least_of_paths(network: &Network) -> BTreeMap<OccurrenceId, f64> {
+/// Returns how long the path of each traverse takes at least in every schedule, in mission units.
+fn min_of_paths(network: &Network) -> BTreeMap<OccurrenceId, f64> {
     let mut least: BTreeMap<OccurrenceId, f64> = BTreeMap::new();
     for arc in network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path) {
         if let Some(occurrence) = arc.occurrence {
@@ -261,7 +263,8 @@ fn least_of_paths(network: &Network) -> BTreeMap<OccurrenceId, f64> {
     least
 }
 
-/// Where two vehicles can be too near each other at once while they do these parts, and how near at the nearest.
+/// Returns where two vehicles can be too near each other at once while they do these parts, and how near at the
+/// nearest.
 fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) -> Option<Meeting> {
     let points = |part: &Part| part.track.iter().map(|place| place.position_m).collect::<Vec<_>>();
     let tracks = parts.map(points);
@@ -297,7 +300,7 @@ fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) ->
         time,
         position_m: nalgebra::center(&a, &b),
         distance_m: pieces.distance_m,
-        least_m: safety_m,
+        min_m: safety_m,
         schedule: parts.iter().filter_map(place).collect(),
     };
     let (movements, orders) = (parts.map(|part| part.movement), Vec::new());
@@ -335,7 +338,7 @@ fn in_earliest_schedule(meetings: &mut [Meeting], drives: &[Drive], motions: &[V
     let track = |vehicle: u32| of_vehicles.get(&vehicle).map(|motion| track(motion, last));
     for meeting in meetings {
         let [Some(one), Some(other)] = meeting.vehicles.map(track) else { continue };
-        let Some(near) = motion::closest_approach(&one, &other, meeting.violation.least_m) else { continue };
+        let Some(near) = motion::closest_approach(&one, &other, meeting.violation.min_m) else { continue };
         let Some(since) = near.violation else { continue };
         let is_under_way = |movement: &Option<OccurrenceId>| {
             movement.is_none_or(|occurrence| {

@@ -74,7 +74,7 @@ impl Courses {
         }
     }
 
-    /// Whether this traverse is known.
+    /// Returns whether this traverse is known.
     pub(crate) fn has(&self, occurrence: OccurrenceId) -> bool {
         self.known.contains_key(&occurrence)
     }
@@ -85,12 +85,12 @@ impl Courses {
     }
 }
 
-/// What all durations of drives are multiples of, in mission units.
+/// Returns what all durations of drives are multiples of, in mission units.
 pub(crate) fn granularity(program: &Program) -> Time {
     Time::ONE.checked_div(i64::from(ticks_per_unit(program))).unwrap_or_default()
 }
 
-/// How many of [`granularity`] a mission unit has.
+/// Returns how many of [`granularity`] a mission unit has.
 fn ticks_per_unit(program: &Program) -> u32 {
     u32::try_from(program.options.time_unit.seconds()).unwrap_or(1).saturating_mul(TICKS_PER_SECOND)
 }
@@ -203,7 +203,7 @@ impl<'run> Driving<'run> {
         }
     }
 
-    /// Where vehicles stand that have driven, which is given, or have not driven yet, with their numbers.
+    /// Returns where vehicles stand that have driven, which is given, or have not driven yet, with their numbers.
     fn standing_m<'a>(&'a self, stand: &'a Stand) -> impl Iterator<Item = (u32, Point2<f64>)> + 'a {
         let starts = self.starts.iter().enumerate();
         let starts = starts.filter_map(|(vehicle, start)| Some((vehicle as u32, (*start)?)));
@@ -253,7 +253,7 @@ impl<'run> Driving<'run> {
         lanes.into_iter().map(lane).collect()
     }
 
-    /// Where a vehicle is that has not driven yet.
+    /// Returns where a vehicle is that has not driven yet.
     fn start_m(&self, vehicle: u32, start: Start) -> Point2<f64> {
         let courses = self.courses.borrow();
         let drives = courses.known.values().map(|course| &course.drive);
@@ -291,7 +291,7 @@ impl<'run> Driving<'run> {
             entries,
             passes,
             reroutes,
-            least_clearance_m,
+            min_clearance_m,
             convoy,
             extra_meters,
             arrived_m,
@@ -316,7 +316,7 @@ impl<'run> Driving<'run> {
             vehicles: frames.map(|(vehicle, frames)| SimulatedVehicle { vehicle, frames }).collect(),
             driven_m,
             reroutes,
-            least_clearance_m,
+            min_clearance_m,
         };
         let entry = |(seconds, text): (f64, String)| {
             let time = start.checked_add(units(seconds)?).ok_or(Overflow)?;
@@ -329,7 +329,7 @@ impl<'run> Driving<'run> {
         let rocks = planning::hidden_rocks(&self.problem.program.world, &course.route, self.map);
         let at_most_m = motion::driven_at_most_m(length_m, company, rocks);
         let taken_m = margin(at_most_m - length_m)?;
-        let given_m = margin(length_m - motion::driven_at_least_m(length_m, company, rocks))?;
+        let given_m = margin(length_m - motion::min_driven_m(length_m, company, rocks))?;
         let extra = |(seconds, meters): (f64, f64)| {
             let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
             Ok((units(seconds)?, meters))
@@ -412,7 +412,7 @@ impl<'run> Driving<'run> {
         self.chosen = chosen;
     }
 
-    /// What was driven, in order of departure; after a contact nothing more.
+    /// Returns what was driven, in order of departure; after a contact nothing more.
     pub(crate) fn into_drives(mut self) -> Vec<SimulatedDrive> {
         if let Some(contact) = &self.contact {
             let at = contact.at.to_f64();

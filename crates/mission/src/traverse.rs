@@ -197,11 +197,9 @@ fn route(
         }
         is_same
     });
-    let least_mps = models().map(|model| model.least_speed_mps).fold(0.0, f64::max);
-    let own_speed_mps = (
-        Rational::from_f64_nearest(least_mps.min(own_mps), 1000)?,
-        Rational::from_f64_nearest(own_mps, 1000)?,
-    );
+    let min_mps = models().map(|model| model.min_speed_mps).fold(0.0, f64::max);
+    let own_speed_mps =
+        (Rational::from_f64_nearest(min_mps.min(own_mps), 1000)?, Rational::from_f64_nearest(own_mps, 1000)?);
     let speed_mps = moving.moves.speed_mps.unwrap_or(own_speed_mps);
     let limits = models()
         .map(|model| DriveLimits::of(&model))
@@ -236,8 +234,8 @@ pub(crate) fn route_from(
     route(network, (world, index), occurrence, &moving, &|_| place.cloned())
 }
 
-/// What is wrong with the `moves` clauses and calls of a program: a traverse without places or vehicles is an ordinary
-/// activity, and its author should know.
+/// Returns what is wrong with the `moves` clauses and calls of a program: a traverse without places or vehicles is an
+/// ordinary activity, and its author should know.
 pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
     let world = &program.world;
     let index = WorldIndex::new(program);
@@ -320,7 +318,7 @@ struct LegKey {
 const MAX_LEGS: usize = 128;
 
 impl Paths {
-    /// How many legs were really searched for, not taken from those kept.
+    /// Returns how many legs were really searched for, not taken from those kept.
     pub const fn searches(&self) -> u64 {
         self.searches
     }

@@ -183,8 +183,8 @@ impl HiddenRocks {
     }
 }
 
-/// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it: it goes around
-/// its followers where it turns back, and around rocks that the map does not show. Measured: see
+/// Returns how far the leader of some followers drives at most along a path of some meters where nothing disturbs it:
+/// it goes around its followers where it turns back, and around rocks that the map does not show. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
 pub fn driven_at_most_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> f64 {
     if length_m > 0.0 {
@@ -196,22 +196,22 @@ pub fn driven_at_most_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> 
     }
 }
 
-/// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at
-/// corners, and goes around what the map does not show; followers have to sort themselves out. `speed_mps` is the greatest
-/// speed of the traverse. Measured in the same way.
-pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, rocks: HiddenRocks) -> f64 {
-    if least_s > 0.0 {
+/// Returns how long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it
+/// sets out and at corners, and goes around what the map does not show; followers have to sort themselves out.
+/// `speed_mps` is the greatest speed of the traverse. Measured in the same way.
+pub fn driven_within_s(min_s: f64, speed_mps: f64, followers: usize, rocks: HiddenRocks) -> f64 {
+    if min_s > 0.0 {
         let followers = followers as f64;
         let rocks_m = rocks.around_m(followers);
-        least_s * (1.0 + LONGER_SHARE) + LONGER_S + (LONGER_FOR_FOLLOWER_M * followers + rocks_m) / speed_mps
+        min_s * (1.0 + LONGER_SHARE) + LONGER_S + (LONGER_FOR_FOLLOWER_M * followers + rocks_m) / speed_mps
     } else {
         0.0
     }
 }
 
-/// How far it drives at least: it cuts corners, and has arrived a little before the path's end, or as near to it as its
-/// followers leave it room; the way around rocks may be shorter than the path. Measured in the same way.
-pub fn driven_at_least_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> f64 {
+/// Returns how far it drives at least: it cuts corners, and has arrived a little before the path's end, or as near to
+/// it as its followers leave it room; the way around rocks may be shorter than the path. Measured in the same way.
+pub fn min_driven_m(length_m: f64, followers: usize, rocks: HiddenRocks) -> f64 {
     let less_m = LESS_M + LESS_FOR_FOLLOWER_M * followers as f64 + rocks.less_m();
     (length_m * (1.0 - LESS_SHARE) - less_m).max(0.0)
 }
@@ -242,7 +242,7 @@ impl Driver {
         }
     }
 
-    /// Where it is and how it moves.
+    /// Returns where it is and how it moves.
     pub const fn state(&self) -> MotionState {
         self.state
     }
@@ -267,23 +267,23 @@ impl Driver {
         &self.path
     }
 
-    /// How it drives.
+    /// Returns how it drives.
     pub const fn settings(&self) -> &DriverSettings {
         &self.settings
     }
 
-    /// What it has seen around it and still remembers, in meters.
+    /// Returns what it has seen around it and still remembers, in meters.
     pub fn seen_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.points_m()
     }
 
-    /// What its sonars have heard that its range finder cannot see, in meters.
+    /// Returns what its sonars have heard that its range finder cannot see, in meters.
     pub fn heard_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.heard_m()
     }
 
-    /// Where it means to drive next, in meters: along a detour while something stands in the way, otherwise along its
-    /// path, for at most `length_m`.
+    /// Returns where it means to drive next, in meters: along a detour while something stands in the way, otherwise
+    /// along its path, for at most `length_m`.
     pub fn plan_m(&self, length_m: f64) -> Vec<Point2<f64>> {
         let (path, from_m) = match &self.detour {
             Some(detour) => (detour, nearest_along(detour, self.state.position_m, 0.0, detour.length_m()).0),
@@ -308,7 +308,7 @@ impl Driver {
         points
     }
 
-    /// Where it is, and then every so many meters until it stands if it brakes now, in meters.
+    /// Returns where it is, and then every so many meters until it stands if it brakes now, in meters.
     pub(crate) fn braking_m(&self, step_m: f64) -> Vec<Point2<f64>> {
         let mut places = vec![self.state.position_m];
         let (mut state, mut last_m) = (self.state, self.state.position_m);
@@ -379,7 +379,8 @@ impl Driver {
         (self.judge(), scan)
     }
 
-    /// Where to drive to: a lookahead ahead on the path, or on the detour when something stands in the way there.
+    /// Returns where to drive to: a lookahead ahead on the path, or on the detour when something stands in the way
+    /// there.
     fn aim(&mut self, map: Option<&ConfigurationSpace>) -> Point2<f64> {
         let here = self.state.position_m;
         let settings = &self.settings;
@@ -477,8 +478,8 @@ impl Driver {
         (best.1, best.2)
     }
 
-    /// How well a speed and rate serve: facing the target soon, the share of the way that the fastest speed within reach
-    /// would make toward it, and a little for room ahead.
+    /// Returns how well a speed and rate serve: facing the target soon, the share of the way that the fastest speed
+    /// within reach would make toward it, and a little for room ahead.
     fn score(&self, speed: f64, rate: f64, target: Point2<f64>, fastest: f64, room_m: f64) -> f64 {
         let look_s = (5.0 * self.settings.step_s).max(1.0);
         let mut state = self.state;

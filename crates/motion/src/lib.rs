@@ -40,7 +40,7 @@ mod way_around;
 
 pub use convoy::{Convoy, ConvoyMember, OtherVehicle, Surroundings};
 pub use driver::{
-    DriveEvent, Driver, DriverSettings, HiddenRocks, driven_at_least_m, driven_at_most_m, driven_within_s,
+    DriveEvent, Driver, DriverSettings, HiddenRocks, driven_at_most_m, driven_within_s, min_driven_m,
 };
 pub use fine_world::FineWorld;
 pub use formation::Formation;

@@ -113,8 +113,10 @@ impl std::fmt::Display for Failure {
             Self::StartInCollision(collision) => place(formatter, "start", collision),
             Self::GoalInCollision(collision) => place(formatter, "goal", collision),
             Self::GoalEnclosed => write!(formatter, "no path: obstacles surround the goal"),
-            Self::NotFound { samples } => write!(formatter, "no path found in {samples} samples"),
-            Self::Stopped { samples } => write!(formatter, "stopped after {samples} samples; no path found"),
+            Self::NotFound { samples } => write!(formatter, "no path found; samples tried: {samples}"),
+            Self::Stopped { samples } => {
+                write!(formatter, "stopped; no path found; samples tried: {samples}")
+            }
         }
     }
 }
@@ -191,14 +193,14 @@ impl Context<'_> {
         Point2::new(self.random.range(low.x, high.x), self.random.range(low.y, high.y))
     }
 
-    /// Whether an edge is free, counted.
+    /// Returns whether an edge is free, counted.
     pub(crate) fn is_edge_free(&mut self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         let free = self.is_free(from_m, to_m);
         self.statistics.blocked_edges += u32::from(!free);
         free
     }
 
-    /// Whether a straight piece of ground is free, counted as a check.
+    /// Returns whether a straight piece of ground is free, counted as a check.
     pub(crate) fn is_free(&mut self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         self.statistics.collision_checks += 1;
         self.space.is_segment_free(from_m, to_m)

@@ -21,7 +21,7 @@ pub struct VehicleModel {
     /// What is kept free around that disc, in meters.
     pub margin_m: f64,
     /// Least speed in meters per second; at 0 the vehicle may stop on its way.
-    pub least_speed_mps: f64,
+    pub min_speed_mps: f64,
     /// Greatest speed in meters per second.
     pub speed_mps: f64,
     /// Greatest turning rate in radians per second.
@@ -71,7 +71,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 1.5,
         circumradius_m: 0.661,
         margin_m: 0.1,
-        least_speed_mps: 0.0,
+        min_speed_mps: 0.0,
         speed_mps: 0.8,
         turn_rate_rps: 0.4,
         acceleration_mps2: 0.5,
@@ -92,7 +92,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 1.5,
         circumradius_m: 0.515,
         margin_m: 0.1,
-        least_speed_mps: 0.0,
+        min_speed_mps: 0.0,
         speed_mps: 1.0,
         turn_rate_rps: 0.5,
         acceleration_mps2: 0.6,
@@ -113,7 +113,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 0.0,
         circumradius_m: 4.124,
         margin_m: 0.5,
-        least_speed_mps: 0.0,
+        min_speed_mps: 0.0,
         speed_mps: 4.0,
         turn_rate_rps: 0.3,
         acceleration_mps2: 0.4,
@@ -178,8 +178,8 @@ impl VehicleModel {
         self.circumradius_m + self.margin_m
     }
 
-    /// How high the antenna is over the ground where that is `ground_m` high, in meters: a blimp cruises in the middle of
-    /// its band.
+    /// Returns how high the antenna is over the ground where that is `ground_m` high, in meters: a blimp cruises in the
+    /// middle of its band.
     pub fn antenna_m(&self, terrain: &Terrain, ground_m: f64) -> f64 {
         match self.drive {
             Drive::SkidSteer { .. } => self.mast_m,
@@ -190,7 +190,7 @@ impl VehicleModel {
         }
     }
 
-    /// What the vehicle asks of the ground of a map.
+    /// Returns what the vehicle asks of the ground of a map.
     pub fn traversability(&self, terrain: &Terrain) -> Traversability {
         match self.drive {
             Drive::SkidSteer { max_grade, rock_diameter_m, .. } => {
@@ -203,8 +203,8 @@ impl VehicleModel {
         }
     }
 
-    /// Where the vehicle can be on a map if `obstacles` are closed to it. Linear in the number of cells (about 10 ms for half a
-    /// million): keep it while neither changes.
+    /// Returns where the vehicle can be on a map if `obstacles` are closed to it. Linear in the number of cells (about
+    /// 10 ms for half a million): keep it while neither changes.
     pub fn configuration_space(&self, terrain: &Terrain, obstacles: &[Obstacle]) -> ConfigurationSpace {
         let occupancy = Occupancy::of_terrain(terrain, obstacles, &self.traversability(terrain));
         ConfigurationSpace::new(occupancy, self.radius_m())

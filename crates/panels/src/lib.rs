@@ -28,10 +28,10 @@ mod terrain;
 mod timeline;
 
 pub use empty::{show_empty, show_stale};
+pub use exact::counted;
 pub use inline_code::without_backticks;
 pub use mission_text::{editor_id, typed_ahead, typed_text};
 pub use panel::{Context, Panel};
-pub use plan::counted;
 pub use registry::Panels;
 
 /// The tokens of the theme that is shown.
@@ -39,7 +39,7 @@ pub fn tokens(state: &workbench::state::AppState) -> &'static theme::Tokens {
     if state.is_dark() { &theme::DARK } else { &theme::LIGHT }
 }
 
-/// Whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
+/// Returns whether the pointer went down here, though it may be up again: where frames are slow, one frame sees both.
 pub(crate) fn is_pressed(response: &egui::Response) -> bool {
     response.is_pointer_button_down_on() || response.clicked()
 }
@@ -56,7 +56,7 @@ pub(crate) fn note_drawing(response: &egui::Response) {
     }
 }
 
-/// Whether a drawing has the keyboard.
+/// Returns whether a drawing has the keyboard.
 pub fn is_drawing_focused(context: &egui::Context) -> bool {
     let focused = context.memory(egui::Memory::focused);
     focused.is_some() && focused == context.data(|data| data.get_temp(focused_drawing()))
@@ -66,7 +66,7 @@ fn focused_drawing() -> egui::Id {
     egui::Id::unique("the drawing that has the keyboard")
 }
 
-/// Whether a panel as a whole has the keyboard.
+/// Returns whether a panel as a whole has the keyboard.
 pub fn is_region_focused(context: &egui::Context) -> bool {
     let focused = context.memory(egui::Memory::focused);
     focused.is_some_and(|id| workbench::PanelKind::ALL.iter().any(|&panel| region_id(panel) == id))

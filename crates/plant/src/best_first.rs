@@ -71,7 +71,7 @@ pub fn update_best(
     let (mut weights, common) = weighed(model, found.into_iter().zip(weights).collect(), &mut likelihoods);
     if !dropped.is_zero() {
         // In one unit, so that nothing is rounded.
-        let greatest = likelihoods.greatest_of_all();
+        let greatest = likelihoods.max_of_all();
         let (weight, divisor) =
             greatest.map_or_else(|| (BigUint::zero(), BigUint::one()), |it| (it.weight, it.divisor));
         dropped = dropped * common * weight;
@@ -92,7 +92,7 @@ struct Unit {
     taken_out: BigUint,
 }
 
-/// How likely each state is before it is observed, as long numbers in proportion.
+/// Returns how likely each state is before it is observed, as long numbers in proportion.
 ///
 /// What all weights of a component have in common is left out: most components do the same in all likely states, so
 /// that the numbers stay short.
@@ -377,7 +377,8 @@ impl Search {
         }
     }
 
-    /// Why the state is impossible, if it is: which of the known sets of modes that cannot be together it holds.
+    /// Returns why the state is impossible, if it is: which of the known sets of modes that cannot be together it
+    /// holds.
     fn conflict(&mut self, new: usize, likelihoods: &mut Likelihoods<'_>) -> Option<usize> {
         let chosen = &self.nodes.chosen[new..];
         let holds = |conflict: &Vec<(u32, u8)>| {

@@ -286,11 +286,12 @@ impl<'step> Step<'step> {
         }))
     }
 
-    /// What is left of predicted states, and of what was dropped of them, when the observation is taken into account.
+    /// Returns what is left of predicted states, and of what was dropped of them, when the observation is taken into
+    /// account.
     fn observed(&mut self, predicted: Vec<(State, BigUint)>, mut dropped: BigUint) -> Expansion {
         let (weights, common) = weighed(self.model, predicted, &mut self.likelihoods);
         if !dropped.is_zero() {
-            dropped = match self.likelihoods.greatest_of_all() {
+            dropped = match self.likelihoods.max_of_all() {
                 Some(greatest) => {
                     let weight = dropped * common * greatest.weight;
                     num_integer::Integer::div_ceil(&weight, &greatest.divisor)

@@ -64,7 +64,7 @@ impl Likelihood {
         self.weight.is_zero()
     }
 
-    /// Whether it is greater than another one.
+    /// Returns whether it is greater than another one.
     fn exceeds(&self, other: &Self) -> bool {
         &self.weight * &other.divisor > &other.weight * &self.divisor
     }
@@ -159,7 +159,8 @@ fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32], sensors
     sum
 }
 
-/// Whether some modes of the components from a place on admit what is observed; if there are too many, it is taken for granted.
+/// Returns whether some modes of the components from a place on admit what is observed; if there are too many, it is
+/// taken for granted.
 fn explains(assumed: &mut Assumed<'_>, place: usize, domains: &mut Domains, nodes: &mut usize) -> bool {
     *nodes += 1;
     if *nodes > MAX_NODES {
@@ -183,7 +184,7 @@ fn explains(assumed: &mut Assumed<'_>, place: usize, domains: &mut Domains, node
     false
 }
 
-/// What is observed of a variable with errors.
+/// Returns what is observed of a variable with errors.
 fn sensor(model: &Model, id: VariableId, observed: u8) -> Option<(u32, Sensor)> {
     let data = model.variables.get(id.0 as usize)?;
     let (part, whole) = data.error?;
@@ -261,7 +262,7 @@ impl<'model> Likelihoods<'model> {
         }
     }
 
-    /// How likely the observation is in the island's modes.
+    /// Returns how likely the observation is in the island's modes.
     pub(crate) fn of(&mut self, at: usize, state: &[u8]) -> &Likelihood {
         let island = &self.model.islands[at];
         let judge = |likelihoods: &mut Self| {
@@ -338,7 +339,7 @@ impl<'model> Likelihoods<'model> {
     }
 
     /// The greatest likelihood in any state, or an upper bound of that; `None` if no state admits the observation.
-    pub(crate) fn greatest_of_all(&mut self) -> Option<Likelihood> {
+    pub(crate) fn max_of_all(&mut self) -> Option<Likelihood> {
         let one = Likelihood { weight: BigUint::one(), divisor: BigUint::one() };
         (0..self.model.islands.len()).map(|at| self.greatest(at)).try_fold(one, |all, one| {
             let one = one?;
@@ -346,12 +347,13 @@ impl<'model> Likelihoods<'model> {
         })
     }
 
-    /// Whether an observation made in an island, or modes that contradict each other there, can rule states out.
+    /// Returns whether an observation made in an island, or modes that contradict each other there, can rule states
+    /// out.
     pub(crate) fn can_exclude(&self, at: usize) -> bool {
         !self.symbols[at].is_empty() || !self.model.islands[at].core.is_empty()
     }
 
-    /// What symbols may be, given what is observed and nothing else.
+    /// Returns what symbols may be, given what is observed and nothing else.
     pub(crate) fn observed_domains(&self) -> Domains {
         self.observed.clone()
     }
@@ -363,7 +365,8 @@ impl<'model> Likelihoods<'model> {
         self.modes.extend(components.filter_map(|component| state.get(component.0 as usize)));
     }
 
-    /// How likely the observation is in the assumed modes of an island; the error names components that cannot be in theirs.
+    /// Returns how likely the observation is in the assumed modes of an island; the error names components that cannot
+    /// be in theirs.
     ///
     /// Where the modes leave no constraint open, what they say without the observation tells whether they admit it.
     fn judge(&mut self, at: usize, assumed: &Assumed<'_>) -> Result<Likelihood, Places> {
@@ -403,7 +406,8 @@ impl<'model> Likelihoods<'model> {
         Ok(Likelihood { weight, divisor })
     }
 
-    /// Why the modes of an island do not admit the observation, if they do not: components of which none can be left out.
+    /// Returns why the modes of an island do not admit the observation, if they do not: components of which none can be
+    /// left out.
     ///
     /// Components that are not free are in their modes anyhow; they are not tried to be left out.
     pub(crate) fn conflict(

@@ -25,7 +25,7 @@ pub(crate) fn status_word(status: PlanStatus) -> String {
     word(look, status.name())
 }
 
-/// How the plan stands, in the table of facts.
+/// Returns how the plan stands, in the table of facts.
 pub(crate) fn fact(record: &Record, review: &Review) -> String {
     let standing = standing(record, &Present::of_review(review));
     let lapsed = match (standing.status, standing.lapsed) {
@@ -37,7 +37,7 @@ pub(crate) fn fact(record: &Record, review: &Review) -> String {
     format!("{}: {}{lapsed}", status_word(standing.status), shown(&standing.seats_in_words()))
 }
 
-/// Where the board signs on paper, with those who have approved this very plan.
+/// Returns where the board signs on paper, with those who have approved this very plan.
 pub(crate) fn signatures(record: &Record, review: &Review) -> String {
     let standing = standing(record, &Present::of_review(review));
     let mut rows = Vec::new();
@@ -78,10 +78,10 @@ fn open_comments(standing: &Standing<'_>) -> String {
     let rows = standing.open_comments.iter().map(|entry| {
         vec![status(Status::Attention), who(entry), shown(&readable_time(&entry.time)), words(entry)]
     });
-    format!("<h3>Open comments</h3>\n{}", table(&["", "Who", "When", "Words"], rows))
+    format!("<h3>Open comments</h3>\n{}", table(&["", "Author", "Date", "Comment"], rows))
 }
 
-/// Who acknowledged a line and why, if someone has.
+/// Returns who acknowledged a line and why, if someone has.
 pub(crate) fn acknowledgment(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
     let Some(entry) = acknowledged.get(key) else { return String::new() };
     let until = match &entry.act {
@@ -111,10 +111,10 @@ pub(crate) fn waivers(record: &Record) -> String {
             shown(waiver.until),
         ]
     });
-    format!("<h2>Waivers</h2>\n{}", table(&["", "Item", "Reason", "Who", "Lapses on"], rows))
+    format!("<h2>Waivers</h2>\n{}", table(&["", "Item", "Reason", "Author", "Lapses on"], rows))
 }
 
-/// What differs since the last approval; nothing where no one has approved.
+/// Returns what differs since the last approval; nothing where no one has approved.
 pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     let Some((entry, approved)) = record.last_approval() else { return String::new() };
     let since = since(approved, document.snapshot, document.review, document.robustness);
@@ -138,11 +138,11 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     }
     if !since.lines.is_empty() {
         let rows = since.lines.iter().map(line);
-        out.push_str(&format!("<h3>Checklist</h3>\n{}", table(&["Section", "What"], rows)));
+        out.push_str(&format!("<h3>Checklist</h3>\n{}", table(&["Section", "Change"], rows)));
     }
     if !since.rules.is_empty() {
         let rows = since.rules.iter().map(|pair| pair.iter().map(|rule| shown(rule)).collect());
-        out.push_str(&format!("<h3>Flight rules</h3>\n{}", table(&["Were", "Are"], rows)));
+        out.push_str(&format!("<h3>Flight rules</h3>\n{}", table(&["Before", "Now"], rows)));
     }
     if let Some(rates) = since.robustness {
         let [before, after] = rates.map(rate);
@@ -227,7 +227,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
             format!("<code>{}</code>", shown(short(entry.digest()))),
         ]
     });
-    let headings = ["#", "When", "Who", "What", "Words", "", "Signature", "Content", "Entry"];
+    let headings = ["#", "Date", "Author", "Action", "Comment", "", "Signature", "Content", "Entry"];
     let rows = table(&headings, rows);
     let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", shown(head))).collect();
     format!(
@@ -241,7 +241,7 @@ fn who(entry: &Entry) -> String {
     if entry.role.is_empty() { shown(name) } else { format!("{} ({})", shown(name), shown(&entry.role)) }
 }
 
-/// What was said, and what it is about.
+/// Returns what was said, and what it is about.
 fn words(entry: &Entry) -> String {
     let text = lines_of(entry.act.text());
     match &entry.act {

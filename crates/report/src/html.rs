@@ -28,9 +28,9 @@ pub struct Document<'a> {
     pub ground: Option<&'a Terrain>,
 }
 
-/// What a report may do wherever it is opened: look as its own style sheet says, and nothing else. It runs no script, loads
-/// nothing and sends nothing, whatever a mission's names say.
-/// The style sheet is allowed by what it says (CSP 3, section 2.3.1), so that no other can slip in.
+/// Returns what a report may do wherever it is opened: look as its own style sheet says, and nothing else. It runs no
+/// script, loads nothing and sends nothing, whatever a mission's names say. The style sheet is allowed by what it says
+/// (CSP 3, section 2.3.1), so that no other can slip in.
 fn policy(style: &str) -> String {
     let digest = BASE64.encode(&Sha256::digest(style.as_bytes()));
     format!("default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'")
@@ -63,7 +63,7 @@ pub fn html(document: &Document<'_>) -> String {
     out
 }
 
-/// What is below the title.
+/// Returns what is below the title.
 fn content(document: &Document<'_>, record: &Record) -> String {
     let mut out = facts(document, record);
     out.push_str(&tables::summary(document.review, document.record));
@@ -80,7 +80,7 @@ fn content(document: &Document<'_>, record: &Record) -> String {
     out
 }
 
-/// What is below each printed page: its number and which content it is about.
+/// Returns what is below each printed page: its number and which content it is about.
 fn page_margins(content_hash: &str) -> String {
     // Hexadecimal digits only, so that nothing can end the text.
     let hash: String = content_hash.chars().filter(char::is_ascii_hexdigit).collect();
@@ -90,13 +90,13 @@ fn page_margins(content_hash: &str) -> String {
     )
 }
 
-/// How many pages the report has at most: a page holds more rows, lines and drawings than are counted here.
+/// Returns how many pages the report has at most: a page holds more rows, lines and drawings than are counted here.
 fn most_sheets(content: &str) -> usize {
     let count = |element: &str| content.matches(element).count();
     20 + count("<tr") / 6 + count("<figure") + count("class=\"line\"") / 15 + content.len() / 20_000
 }
 
-/// Where the number of each page lies, for browsers that put nothing into the margins of pages.
+/// Returns where the number of each page lies, for browsers that put nothing into the margins of pages.
 fn sheet_rules(sheets: usize) -> String {
     (1..=sheets).map(|sheet| format!(".sheets :nth-child({sheet}) {{ --sheet: {sheet}; }}\n")).collect()
 }
@@ -125,9 +125,10 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
         Some(_) => "flat ground".to_owned(),
         None => "none".to_owned(),
     };
+    let need = if attention == 1 { "needs" } else { "need" };
     format!(
         "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}: {verdict}</dd>\n\
-         <dt>Checklist</dt><dd>{passed} passed, {attention} need attention, {failed} failed; {information} for information</dd>\n\
+         <dt>Checklist</dt><dd>{passed} passed, {attention} {need} attention, {failed} failed; {information} for information</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
          <dt>Board</dt><dd>{}</dd>\n\

@@ -42,7 +42,7 @@ pub(crate) fn sections(review: &Review) -> String {
     out
 }
 
-/// What has failed and what deserves a look, of all sections, before anything else.
+/// Returns what has failed and what deserves a look, of all sections, before anything else.
 pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
     let acknowledged = record.map(Record::acknowledgments).unwrap_or_default();
     let acknowledged = &acknowledged;
@@ -70,7 +70,7 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
     if rows.is_empty() {
         out.push_str("<p class=\"muted\">Nothing failed, and nothing needs attention.</p>\n");
     } else {
-        out.push_str(&table(&["", "Section", "What", "Criterion", "Acknowledged by", "Where"], rows));
+        out.push_str(&table(&["", "Section", "Finding", "Criterion", "Acknowledged by", "Where"], rows));
     }
     out
 }
@@ -106,8 +106,9 @@ fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
     (rows, more)
 }
 
-/// Which rows there is room for: what has failed or needs attention before the rest, and what has passed last. Rows that
-/// go on with the one before, which have nothing in their first cell, stay with it. `size` is what rows take of the room.
+/// Returns which rows there is room for: what has failed or needs attention before the rest, and what has passed last.
+/// Rows that go on with the one before, which have nothing in their first cell, stay with it. `size` is what rows take
+/// of the room.
 fn chosen(rows: &[Vec<String>], mut room: usize, size: impl Fn(&[Vec<String>]) -> usize) -> Vec<bool> {
     let begins: Vec<usize> = (0..rows.len())
         .filter(|&at| at == 0 || rows[at].first().is_some_and(|cell| !cell.is_empty()))
@@ -127,7 +128,7 @@ fn chosen(rows: &[Vec<String>], mut room: usize, size: impl Fn(&[Vec<String>]) -
     is_chosen
 }
 
-/// Where a row stands among those that there is no room for all of, by its status.
+/// Returns where a row stands among those that there is no room for all of, by its status.
 fn urgency(row: &[String]) -> u8 {
     let is = |status: Status| {
         let start = format!("<span class=\"status {}\">", status.name());
@@ -146,7 +147,7 @@ fn urgency(row: &[String]) -> u8 {
 /// stays below what people leaf through.
 const PRINTED_HEIGHT: usize = 1500;
 
-/// How high a row is on paper, in points, judged by how much is written in its cells.
+/// Returns how high a row is on paper, in points, judged by how much is written in its cells.
 fn printed_height(row: &[String]) -> usize {
     let visible = |cell: &String| {
         let mut is_tag = false;
@@ -160,7 +161,7 @@ fn printed_height(row: &[String]) -> usize {
     5 + 13 * letters.div_ceil(45).max(1)
 }
 
-/// Which rows of a table are printed, while there is room. The others stand on the screen.
+/// Returns which rows of a table are printed, while there is room. The others stand on the screen.
 fn printed(rows: &[Vec<String>]) -> Vec<bool> {
     chosen(rows, PRINTED_HEIGHT, |rows| rows.iter().map(|row| printed_height(row)).sum())
 }
@@ -215,12 +216,12 @@ fn time(time: Bound) -> String {
 
 fn lines(lines: &[&Line]) -> String {
     table(
-        &["", "What", "Criterion", "Where"],
+        &["", "Finding", "Criterion", "Where"],
         lines.iter().map(|line| vec![status(line.status), shown(&line.text), criterion(line), place(line)]),
     )
 }
 
-/// What a line is held against.
+/// Returns what a line is held against.
 fn criterion(line: &Line) -> String {
     let criterion = line.criterion.as_deref().map(shown);
     criterion.map(|it| format!("<div class=\"criterion\">{it}</div>")).unwrap_or_default()
@@ -341,7 +342,8 @@ fn events(review: &Review) -> String {
     out
 }
 
-/// How many runs with chance reached the end, and what broke the others; before such runs, that there were none.
+/// Returns how many runs with chance reached the end, and what broke the others; before such runs, that there were
+/// none.
 pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String {
     let mut out = String::from("<h2>Robustness</h2>\n");
     if let Some(line) = &review.robustness {

@@ -236,7 +236,7 @@ pub enum Property {
     /// From front to back and from side to side, in meters.
     Body { length_m: f64, width_m: f64 },
     /// Least and greatest speed in meters per second.
-    Speed { least_mps: Rational, greatest_mps: Rational },
+    Speed { min_mps: Rational, max_mps: Rational },
     /// The steepest slope that is driven, in radians.
     Slope { angle_rad: f64 },
     /// The size of what passes below, in meters: a rock, or for what flies the height over the ground.
@@ -392,7 +392,7 @@ impl Order {
         }
     }
 
-    /// What holds exactly when this does not.
+    /// Returns what holds exactly when this does not.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
@@ -403,17 +403,17 @@ impl Order {
         }
     }
 
-    /// Whether it asks for much, so that what is taken breaks it.
+    /// Returns whether it asks for much, so that what is taken breaks it.
     pub const fn is_minimum(self) -> bool {
         matches!(self, Self::Above | Self::AtLeast)
     }
 
-    /// Whether the bound itself is excluded.
+    /// Returns whether the bound itself is excluded.
     pub const fn is_strict(self) -> bool {
         matches!(self, Self::Above | Self::Below)
     }
 
-    /// Whether an amount compares so with a bound.
+    /// Returns whether an amount compares so with a bound.
     pub fn holds(self, amount: Rational, bound: Rational) -> bool {
         match self {
             Self::Below => amount < bound,
@@ -637,7 +637,7 @@ impl DurationUnit {
         Rational::new(numerator, denominator)
     }
 
-    /// How many of a mission's units of time one is, if that can be said exactly.
+    /// Returns how many of a mission's units of time one is, if that can be said exactly.
     pub fn in_units(self, unit: TimeUnit) -> Option<Rational> {
         self.seconds()?.checked_div(Rational::from_integer(unit.seconds()))
     }
@@ -667,7 +667,7 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// What is directly in it.
+    /// Returns what is directly in it.
     pub fn parts(&self) -> &[Self] {
         match &self.kind {
             StatementKind::Sequence(parts)
@@ -844,7 +844,7 @@ impl Controllability {
     pub const ALL: [(&'static str, Self); 3] =
         [("dynamic", Self::Dynamic), ("strong", Self::Strong), ("none", Self::None)];
 
-    /// What this word asks for.
+    /// Returns what this word asks for.
     pub fn by_name(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, asked)| asked)
     }
@@ -896,7 +896,7 @@ pub struct World {
 }
 
 impl ObstacleDecl {
-    /// Whether it is a body that vehicles would touch.
+    /// Returns whether it is a body that vehicles would touch.
     pub const fn is_solid(&self) -> bool {
         matches!(self.kind, ObstacleKind::Solid)
     }

@@ -20,7 +20,7 @@ pub struct SimulatedDrive {
     /// How often another way was looked for.
     pub reroutes: u32,
     /// The least distance of a vehicle's rim from anything it could touch, in meters; infinite in an empty world.
-    pub least_clearance_m: f64,
+    pub min_clearance_m: f64,
 }
 
 /// One vehicle's part in it.
@@ -50,13 +50,13 @@ pub struct DriveFrame {
 }
 
 impl SimulatedVehicle {
-    /// What it was doing at `time`, in mission units; `None` before it set out.
+    /// Returns what it was doing at `time`, in mission units; `None` before it set out.
     pub fn at(&self, time: f64) -> Option<&DriveFrame> {
         let after = self.frames.partition_point(|frame| frame.time <= time);
         self.frames.get(after.checked_sub(1)?)
     }
 
-    /// Where it was at `time`, on an even way between frames; `None` before it set out.
+    /// Returns where it was at `time`, on an even way between frames; `None` before it set out.
     pub fn place_m(&self, time: f64) -> Option<Point2<f64>> {
         let after = self.frames.partition_point(|frame| frame.time <= time);
         let before = self.frames.get(after.checked_sub(1)?)?;

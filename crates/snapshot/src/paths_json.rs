@@ -19,7 +19,7 @@ fn traverse_json(traverse: &Traverse, network: &Network, world: &World) -> Value
             "length_m": figures.length_m,
             "min_clearance_m": figures.min_clearance_m.is_finite().then_some(figures.min_clearance_m),
             "max_slope_deg": figures.max_slope_deg,
-            "duration": [figures.least_duration, figures.greatest_duration],
+            "duration": [figures.min_duration, figures.max_duration],
         })
     });
     let occurrence = network.occurrences.get(traverse.occurrence.index());
@@ -39,7 +39,7 @@ pub fn separation_violations_json(violations: &[SeparationViolation], world: &Wo
             "time": violation.time,
             "position_m": violation.position_m,
             "distance_m": violation.distance_m,
-            "least_m": violation.least_m,
+            "least_m": violation.min_m,
             "in_earliest_schedule": violation.schedule.is_empty(),
         })
     };

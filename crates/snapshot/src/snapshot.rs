@@ -129,8 +129,8 @@ pub struct Traverse {
 }
 
 impl Traverse {
-    /// Whether rocks that the map does not show could close its path, so that it may take longer than drivers were measured to
-    /// take.
+    /// Returns whether rocks that the map does not show could close its path, so that it may take longer than drivers
+    /// were measured to take.
     pub fn may_be_closed(&self) -> bool {
         self.narrow_m.is_some() || self.rocks == HiddenRocks::Many
     }
@@ -146,9 +146,9 @@ pub struct PathFigures {
     /// The steepest slope in degrees.
     pub max_slope_deg: f64,
     /// Least duration in mission units, from length, slope and the greatest speed.
-    pub least_duration: Time,
+    pub min_duration: Time,
     /// Greatest duration, from length and the least speed.
-    pub greatest_duration: Bound,
+    pub max_duration: Bound,
 }
 
 /// The path between two waypoints.
@@ -167,7 +167,7 @@ pub struct Leg {
 }
 
 impl Leg {
-    /// How a vehicle faces at its end, in radians counter-clockwise from east; `None` of a leg without length.
+    /// Returns how a vehicle faces at its end, in radians counter-clockwise from east; `None` of a leg without length.
     pub fn heading_rad(&self) -> Option<f64> {
         let ahead =
             self.points_m.windows(2).rev().map(|pair| pair[1] - pair[0]).find(|ahead| ahead.norm() > 0.0)?;
@@ -227,7 +227,7 @@ pub struct SeparationViolation {
     /// How near they come, in meters, from center to center.
     pub distance_m: f64,
     /// How near they may come, in meters.
-    pub least_m: f64,
+    pub min_m: f64,
     /// The schedule in which they do: when what they drive starts and ends. Empty for the earliest schedule.
     pub schedule: Vec<MovementTimes>,
 }
@@ -236,7 +236,7 @@ impl SeparationViolation {
     /// The warning of one.
     pub const CODE: Code = Code("W-ENCOUNTER");
 
-    /// Who comes how near whom, where, and in which schedule.
+    /// Returns who comes how near whom, where, and in which schedule.
     pub fn words(&self, world: &World, network: &Network) -> String {
         let vehicle = |index: u32| world.vehicles.get(index as usize).map_or("?", |it| it.name.text.as_str());
         let [first, second] = self.vehicles.map(vehicle);
@@ -254,7 +254,7 @@ impl SeparationViolation {
         let place = self.position_m;
         format!(
             "{first} and {second} come within {:.2} m of each other near ({:.0}, {:.0}) at {:.1}, {schedule}; they need at least {:.2} m",
-            self.distance_m, place.x, place.y, self.time, self.least_m
+            self.distance_m, place.x, place.y, self.time, self.min_m
         )
     }
 }
@@ -280,7 +280,7 @@ impl Planning {
         gap.into_iter().chain(repairs).chain(bounds).collect()
     }
 
-    /// Why it is not known whether there is a plan, in one sentence without an end; nothing if that is known.
+    /// Returns why it is not known whether there is a plan, in one sentence without an end; nothing if that is known.
     pub fn undecided(&self) -> Option<&'static str> {
         let is_open = self.outcome.status == kirk::Status::Limit && self.outcome.plans.is_empty();
         let why = if self.undrivable.is_empty() {
@@ -291,7 +291,7 @@ impl Planning {
         is_open.then_some(why)
     }
 
-    /// Whether anything in it refers to places in the text.
+    /// Returns whether anything in it refers to places in the text.
     pub fn refers_to_places(&self) -> bool {
         self.outcome.failure.is_some()
     }
@@ -332,7 +332,7 @@ impl Snapshot {
         }
     }
 
-    /// Whether both hold the same, but for the problems of their texts and where in those things are written.
+    /// Returns whether both hold the same, but for the problems of their texts and where in those things are written.
     pub fn shows_same(&self, other: &Self) -> bool {
         let is_known =
             self.keys != PartKeys::default() && self.keys == other.keys && self.stage == other.stage;
@@ -346,7 +346,7 @@ impl Snapshot {
 }
 
 impl VehicleMotion {
-    /// Where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
+    /// Returns where the vehicle is at `time`, in mission units, and its heading in radians; `None` without keyframes.
     pub fn at(&self, time: f64) -> Option<(Point2<f64>, f64)> {
         let seconds = |frame: &Keyframe| frame.time.to_f64();
         let after = self.keyframes.partition_point(|frame| seconds(frame) <= time);

@@ -17,8 +17,8 @@ pub fn model(world: &World, name: &str) -> Option<VehicleModel> {
     for property in rmpl::fleet::properties(&lineage) {
         match property {
             Property::Body { length_m, width_m } => model = model.with_body(length_m, width_m),
-            Property::Speed { least_mps, greatest_mps } => {
-                (model.least_speed_mps, model.speed_mps) = (least_mps.to_f64(), greatest_mps.to_f64());
+            Property::Speed { min_mps, max_mps } => {
+                (model.min_speed_mps, model.speed_mps) = (min_mps.to_f64(), max_mps.to_f64());
             }
             Property::Slope { angle_rad } => model = model.with_slope(angle_rad),
             Property::Clearance { size_m } => model = model.with_clearance(size_m),
@@ -36,7 +36,7 @@ pub fn model_of(world: &World, vehicle: usize) -> Option<VehicleModel> {
     model(world, &world.vehicles.get(vehicle)?.model.text)
 }
 
-/// Whether a vehicle is in the air, above all that is on the ground.
+/// Returns whether a vehicle is in the air, above all that is on the ground.
 pub fn flies(world: &World, vehicle: u32) -> bool {
     let model = model_of(world, vehicle as usize);
     model.is_some_and(|model| matches!(model.drive, motion::Drive::Flight { .. }))
@@ -51,7 +51,7 @@ pub fn radius_m(world: &World, vehicle: u32) -> f64 {
 /// What the order of two traverses that would meet is called, as a resource that the mission does not have.
 pub const WAY: &str = "way#";
 
-/// Whether a resource is the order of two traverses that would meet.
+/// Returns whether a resource is the order of two traverses that would meet.
 pub fn is_way(resource: &Resource) -> bool {
     resource.name.starts_with(WAY)
 }
@@ -65,13 +65,13 @@ pub struct Moving<'program> {
     pub vehicles: Vec<SmolStr>,
 }
 
-/// What `occurrence` moves, if it is a traverse.
+/// Returns what `occurrence` moves, if it is a traverse.
 pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> Option<Moving<'program>> {
     Moving::of(program.primitives.iter().find(|it| it.name.text == occurrence.activity)?, occurrence)
 }
 
 impl<'program> Moving<'program> {
-    /// What a call of `primitive` moves, if it is a traverse.
+    /// Returns what a call of `primitive` moves, if it is a traverse.
     pub fn of(primitive: &'program PrimitiveDecl, occurrence: &Occurrence) -> Option<Self> {
         let moves = primitive.moves.as_ref()?;
         Some(Self { moves, vehicles: primitive.moved(&occurrence.arguments).cloned().collect() })
@@ -94,9 +94,9 @@ mod tests {
         .world;
         let rover = *motion::vehicle_model("ATRV").expect("built in");
         let scout = rover.with_body(0.6, 0.42).with_slope(20_f64.to_radians());
-        let scout = motion::VehicleModel { speed_mps: 0.8, least_speed_mps: 0.01, ..scout };
+        let scout = motion::VehicleModel { speed_mps: 0.8, min_speed_mps: 0.01, ..scout };
         assert_eq!(model(&world, "Scout"), Some(scout.with_turning_radius(0.5)));
-        let fast = motion::VehicleModel { speed_mps: 2.0, least_speed_mps: 0.0, mast_m: 3.0, ..scout };
+        let fast = motion::VehicleModel { speed_mps: 2.0, min_speed_mps: 0.0, mast_m: 3.0, ..scout };
         assert_eq!(model(&world, "Fast"), Some(fast.with_turning_radius(0.5)));
         let ship = motion::vehicle_model("Blimp").expect("built in").with_altitude_band([20.0, 30.0]);
         assert_eq!(model(&world, "Ship"), Some(ship.with_clearance(9.0)));

@@ -63,23 +63,23 @@ pub struct SegmentBounds {
 
 /// The times of a path's segments in order, exactly as [`insert_path`] puts them into a network.
 pub fn segment_bounds(path: &TraversePath, unit_seconds: i64) -> Result<Vec<SegmentBounds>, PathError> {
-    let (least_mps, greatest_mps) = path.speed_mps;
-    if !greatest_mps.is_positive() || least_mps.is_negative() || least_mps > greatest_mps {
-        return Err(PathError::Speed(least_mps.to_string(), greatest_mps.to_string()));
+    let (min_mps, max_mps) = path.speed_mps;
+    if !max_mps.is_positive() || min_mps.is_negative() || min_mps > max_mps {
+        return Err(PathError::Speed(min_mps.to_string(), max_mps.to_string()));
     }
-    let has_slowest = !path.may_stop && least_mps.is_positive();
+    let has_slowest = !path.may_stop && min_mps.is_positive();
     let mut bounds = Vec::new();
     for (leg, number) in path.legs.iter().zip(1..) {
         let speeds = leg.slope_speeds_mps.iter().copied().chain(std::iter::repeat(None));
         for ((&length_m, slope_mps), vertex) in leg.segment_lengths_m.iter().zip(speeds).zip(1..) {
             let error = || PathError::Length(length_m.to_string());
             let at_speed = |speed| duration(length_m, speed, unit_seconds).ok_or_else(error);
-            let mut least = at_speed(greatest_mps)?;
+            let mut least = at_speed(max_mps)?;
             if let Some(speed) = slope_mps {
                 least = least.max(slope_duration(length_m, speed, unit_seconds).ok_or_else(error)?);
             }
             let greatest =
-                if has_slowest { Bound::Finite(at_speed(least_mps)?.max(least)) } else { Bound::Infinite };
+                if has_slowest { Bound::Finite(at_speed(min_mps)?.max(least)) } else { Bound::Infinite };
             bounds.push(SegmentBounds { leg: number, vertex, least, greatest });
         }
     }

@@ -65,19 +65,15 @@ pub struct Precedence {
 }
 
 impl Plan {
-    /// Whether another plan of the network is the same: they make the same choices, rest each requirement on the same assertion,
-    /// and order the same way what excludes each other. How they order uses of resources does not tell them apart.
+    /// Returns whether another plan of the network is the same: they make the same choices, rest each requirement on
+    /// the same assertion, and order the same way what excludes each other. How they order uses of resources does not
+    /// tell them apart.
     pub fn is_same(&self, other: &Self) -> bool {
-        self.identity() == other.identity()
+        Distinction::of(self) == Distinction::of(other)
     }
 
-    /// What makes it another plan than others of its network.
-    fn identity(&self) -> (&[Choice], &[CausalLink], &[Ordering], &[StateOrder]) {
-        (&self.choices, &self.causal_links, &self.conflict_order, &self.state_order)
-    }
-
-    /// What gives a variable its values, of what the plan selects: where it keeps them in the plan's order, the initial value
-    /// first.
+    /// Returns what gives a variable its values, of what the plan selects: where it keeps them in the plan's order, the
+    /// initial value first.
     pub fn told(&self, network: &Network, variable: VariableId) -> Vec<LabelId> {
         let labels = network.labels.iter().enumerate().filter(|(_, label)| {
             label.literal.variable == variable
@@ -103,10 +99,10 @@ impl Plan {
         links.chain(orderings).chain(uses).collect()
     }
 
-    /// Which events come first where several happen at one time (SPEC 10.4): pairs of an earlier and a later event, whose
-    /// transitive closure is the order within an instant. It follows the text, the causal links of variables that keep
-    /// their values, and the orderings that planning chose; a valid plan has no cycle of such pairs. Nothing is before the
-    /// start.
+    /// Returns which events come first where several happen at one time (SPEC 10.4): pairs of an earlier and a later
+    /// event, whose transitive closure is the order within an instant. It follows the text, the causal links of
+    /// variables that keep their values, and the orderings that planning chose; a valid plan has no cycle of such
+    /// pairs. Nothing is before the start.
     pub fn instant_order(&self, network: &Network) -> Vec<[NodeId; 2]> {
         let selected = network.arcs.iter().zip(&self.selected_arcs).filter(|(_, is_selected)| **is_selected);
         let forward = selected.map(|(arc, _)| arc).filter(|arc| !arc.lower.is_negative());
@@ -121,15 +117,15 @@ impl Plan {
         pairs.filter(|&[earlier, later]| earlier != later && later != network.start).collect()
     }
 
-    /// Whether an event is of something that the plan selects. Alternatives of foreign networks may end at one node, which has
-    /// the ends of all of them.
+    /// Returns whether an event is of something that the plan selects. Alternatives of foreign networks may end at one
+    /// node, which has the ends of all of them.
     pub fn has_event(&self, network: &Network, event: EventRef) -> bool {
         let is_selected = |node: NodeId| self.selected_nodes.get(node.index()) == Some(&true);
         let occurrence = network.occurrences.get(event.occurrence.index());
         occurrence.is_some_and(|occurrence| is_selected(occurrence.start) && is_selected(occurrence.end))
     }
 
-    /// Whether the environment chooses some duration of the plan, and the mission asks to withstand that.
+    /// Returns whether the environment chooses some duration of the plan, and the mission asks to withstand that.
     pub fn has_natures_choice(&self, network: &Network) -> bool {
         let arcs = (0..network.arcs.len()).map(ArcId::from_index);
         arcs.zip(&self.selected_arcs).any(|(arc, &is_selected)| is_selected && network.is_uncertain(arc))
@@ -308,7 +304,7 @@ impl PlanOrder {
         Self { pairs, places }
     }
 
-    /// Whether the first interval is over before the other one begins, of two that exclude each other.
+    /// Returns whether the first interval is over before the other one begins, of two that exclude each other.
     pub fn is_before(&self, first: LabelId, then: LabelId) -> bool {
         let places = (self.places.get(&first), self.places.get(&then));
         let is_earlier = matches!(places, (Some(one), Some(other)) if one.0 == other.0 && one.1 < other.1);
@@ -412,7 +408,7 @@ mod tests {
         assert_eq!(plans.into_plans(), [chosen, first]);
     }
 
-    /// Whether the pairs lead from one event to another.
+    /// Returns whether the pairs lead from one event to another.
     fn is_before(network: &Network, plan: &Plan, earlier: &str, later: &str) -> bool {
         let names = plan_json::Names::new(network);
         let event = |name: &str| names.event(name).expect("the network has the event");

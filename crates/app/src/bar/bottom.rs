@@ -126,7 +126,11 @@ fn figures(ui: &mut Ui, context: &Context<'_>) {
     );
     faint(text);
     if let Some(network) = &snapshot.network {
-        faint(format!("{} events  {} constraints", network.nodes.len(), network.arcs.len()));
+        faint(format!(
+            "{}  {}",
+            counted(network.nodes.len() as u64, "event"),
+            counted(network.arcs.len() as u64, "constraint")
+        ));
     }
     faint(format!("revision {}", context.state.document.revision()));
 }

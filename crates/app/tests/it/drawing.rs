@@ -154,7 +154,7 @@ fn statements_are_copied_from_the_drawing_and_pasted_into_it() {
     app.harness.event(Event::Paste("} nonsense {".to_owned()));
     app.settle();
     assert_eq!(app.harness.state().source(), before);
-    assert!(app.json()["toasts"].to_string().contains("no room"), "{}", app.json()["toasts"]);
+    assert!(app.json()["toasts"].to_string().contains("syntax error"), "{}", app.json()["toasts"]);
 }
 
 #[test]

@@ -20,7 +20,7 @@ use crate::options::Stats;
 use crate::trace::{Event, TreeNodeId};
 
 /// What no solution below a state is better than: the least value of each goal's sum.
-pub(crate) type LeastSums = Vec<i64>;
+pub(crate) type MinSums = Vec<i64>;
 
 /// More states are not kept.
 const MAX_STATES: usize = 200_000;
@@ -38,7 +38,7 @@ struct State {
 /// A state that may lead to solutions. Of equally good ones the deepest continues, and of these the first.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Open {
-    least: Reverse<LeastSums>,
+    least: Reverse<MinSums>,
     depth: u32,
     state: Reverse<StateId>,
 }
@@ -49,7 +49,7 @@ pub(crate) struct Frontier {
     states: TiVec<StateId, State>,
     open: BinaryHeap<Open>,
     /// What the last solution was not to be better than.
-    pub(crate) visited: LeastSums,
+    pub(crate) visited: MinSums,
 }
 
 /// What came of going on with the best open states.
@@ -71,8 +71,8 @@ impl Frontier {
         Self { states: vec![root].into(), open: BinaryHeap::from([open]), visited: Vec::new() }
     }
 
-    /// What nothing that is open is better than, if anything is.
-    pub(crate) fn least(&self) -> Option<&LeastSums> {
+    /// Returns what nothing that is open is better than, if anything is.
+    pub(crate) fn least(&self) -> Option<&MinSums> {
         self.open.peek().map(|open| &open.least.0)
     }
 
@@ -88,7 +88,7 @@ impl Frontier {
         way
     }
 
-    fn push(&mut self, state: State, least: LeastSums, depth: u32) {
+    fn push(&mut self, state: State, least: MinSums, depth: u32) {
         let state = self.states.push_and_get_key(state);
         self.open.push(Open { least: Reverse(least), depth, state: Reverse(state) });
     }
@@ -114,7 +114,7 @@ impl Solver {
                 continue;
             }
             // What has been learned since it was opened may tell more.
-            let known = self.least_sums(problem, &open.least.0);
+            let known = self.min_sums(problem, &open.least.0);
             if known > open.least.0 && open.depth > 0 {
                 self.record_bound(problem, &known);
                 open.least.0 = known;
@@ -277,7 +277,7 @@ impl Solver {
         if !self.settle(problem) {
             return false;
         }
-        let least = self.least_sums(problem, &from.least.0);
+        let least = self.min_sums(problem, &from.least.0);
         self.record_bound(problem, &least);
         frontier.push(
             State { parent: Some(from.state.0), decided: Some(decided), tree_node },
@@ -288,8 +288,8 @@ impl Solver {
         true
     }
 
-    /// What no solution below the present state is better than, where nothing above it is better than `before`.
-    fn least_sums(&self, problem: &Problem<'_>, before: &[i64]) -> LeastSums {
+    /// Returns what no solution below the present state is better than, where nothing above it is better than `before`.
+    fn min_sums(&self, problem: &Problem<'_>, before: &[i64]) -> MinSums {
         problem.goal_bounds(self).into_iter().zip(before).map(|(own, &before)| own.max(before)).collect()
     }
 

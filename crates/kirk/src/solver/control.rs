@@ -95,7 +95,7 @@ impl Problem<'_> {
             .collect();
         for (from, to, weight, when) in solver.differences.constraints() {
             let rests_on = [when[0], when[1], trail.presence(from), trail.presence(to)];
-            if let Some(&least) = self.sides.least_movements.get(&when[0])
+            if let Some(&least) = self.sides.min_movements.get(&when[0])
                 && links.contains(&(to, from))
             {
                 if trail.holds(when[0]) {
@@ -131,7 +131,8 @@ impl Problem<'_> {
         self.alternatives.iter().flatten().copied().filter(|&taken| solver.trail.holds(taken))
     }
 
-    /// Which times the environment chooses in the present solution: ends of its durations, and what is tied to them.
+    /// Returns which times the environment chooses in the present solution: ends of its durations, and what is tied to
+    /// them.
     fn natures_variables(&self, solver: &Solver) -> TiVec<Variable, bool> {
         let mut natures: TiVec<Variable, bool> = vec![false; solver.trail.num_variables()].into();
         for arc in &self.model.arcs {
@@ -159,7 +160,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Whether nature chooses an arc's duration in the present solution. With one side only it is a constraint like others.
+    /// Returns whether nature chooses an arc's duration in the present solution. With one side only it is a constraint
+    /// like others.
     fn is_link(&self, solver: &Solver, arc: &ModelArc) -> bool {
         arc.is_uncertain
             && arc.lower != UNBOUNDED_BELOW
@@ -171,7 +173,7 @@ impl Problem<'_> {
         (self.times[arc.from], self.times[arc.to])
     }
 
-    /// What keeps two times of the present solution at one.
+    /// Returns what keeps two times of the present solution at one.
     fn ties<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = &'s ModelArc> + 's {
         self.model.arcs.iter().filter(|arc| {
             arc.is_tie && self.times[arc.from] != self.times[arc.to] && self.is_present(solver, arc)
@@ -382,7 +384,7 @@ impl<'a> HappensBefore<'a> {
         Self { problem, solver, after: None, found: BTreeMap::new() }
     }
 
-    /// Whether an event happens before another one, or is it.
+    /// Returns whether an event happens before another one, or is it.
     fn is_before(&mut self, first: NodeId, then: NodeId) -> bool {
         let Self { problem, solver, after, found } = self;
         let nodes = problem.model.num_nodes;
@@ -408,7 +410,7 @@ impl<'a> HappensBefore<'a> {
     }
 }
 
-/// Whether one time is never later than others; by position in `then`.
+/// Returns whether one time is never later than others; by position in `then`.
 fn is_before(stn: &mut Stn, in_force: &InForce, first: Variable, then: &[Variable]) -> Option<Vec<bool>> {
     let Some(first) = in_force.points[first] else { return Some(vec![false; then.len()]) };
     let mut row = Vec::new();

@@ -40,7 +40,7 @@ pub(crate) struct Sides {
     /// That a movement sets out where another change has left its vehicle.
     pub(super) departures: Vec<(Departing, Literal)>,
     /// How long a movement takes at least, by the literal of where it begins.
-    pub(super) least_movements: BTreeMap<Literal, i64>,
+    pub(super) min_movements: BTreeMap<Literal, i64>,
 }
 
 impl Problem<'_> {
@@ -162,7 +162,7 @@ impl Problem<'_> {
                     Some(Some(least)) => {
                         let first = solver.differences.len();
                         solver.difference(moving.end, moving.start, -least, [last; 2]);
-                        self.sides.least_movements.insert(last, least);
+                        self.sides.min_movements.insert(last, least);
                         solver.check_differences(first);
                     }
                 }
@@ -196,7 +196,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Whether all changes of a variable are movements of which no two overlap, and planning orders most of them.
+    /// Returns whether all changes of a variable are movements of which no two overlap, and planning orders most of
+    /// them.
     fn are_movements_in_any_order(&self, changes: &[LabelId]) -> bool {
         let pairs = changes
             .iter()
@@ -263,7 +264,7 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// Whether a requirement could rest on a change, by their alternatives and windows.
+    /// Returns whether a requirement could rest on a change, by their alternatives and windows.
     fn can_give(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
         let labels = &self.model.conditions.labels;
         // What is nested after the requirement comes too late, within an instant as well.
@@ -277,14 +278,14 @@ impl Problem<'_> {
             && (solver.takes_nothing_for_granted() || self.fit_windows(solver, ask, change))
     }
 
-    /// Whether windows let a requirement rest on a change.
+    /// Returns whether windows let a requirement rest on a change.
     fn fit_windows(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
         let (asked, given) = (self.intervals[ask], self.intervals[change]);
         !solver.trail.fails(given.presence)
             && solver.trail.least(self.ready[change]) <= solver.trail.most(asked.start)
     }
 
-    /// Whether two changes exclude each other, and planning has to order them.
+    /// Returns whether two changes exclude each other, and planning has to order them.
     fn is_unordered(&self, (left, right): (LabelId, LabelId)) -> bool {
         self.model.conditions.exclude(left, right)
             && self.can_be_together(left, right)
@@ -400,7 +401,7 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// What the literals of variables that keep their values say.
+    /// Returns what the literals of variables that keep their values say.
     pub(super) fn names_of_kept(&self) -> Vec<(Literal, TreeChoice)> {
         let mut names = Vec::new();
         for (ask, options) in &self.sides.carriers {
@@ -418,7 +419,7 @@ impl Problem<'_> {
         names
     }
 
-    /// What the solver's solution says of variables that keep their values.
+    /// Returns what the solver's solution says of variables that keep their values.
     pub(crate) fn kept(&self, solver: &Solver) -> Kept {
         let exists = |label: LabelId| solver.trail.holds(self.intervals[label].presence);
         let mut kept = Kept::default();

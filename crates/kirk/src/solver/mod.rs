@@ -79,7 +79,7 @@ use sweeps::Sweeps;
 use tours::Tours;
 use trail::{Conflict, Trail};
 
-pub(crate) use best_first::{Frontier, LeastSums, Visit};
+pub(crate) use best_first::{Frontier, MinSums, Visit};
 pub(crate) use encode::{Part, Problem};
 pub(crate) use goals::GoalSums;
 pub(crate) use growth::{Growth, Unencoded};
@@ -176,6 +176,8 @@ pub(crate) struct Solver {
     num_left: usize,
     /// Whether it is not known yet where that is.
     is_returning: bool,
+    /// Whether what the solution broke has been counted as a failure already.
+    is_failure_counted: bool,
     conflicts_until_restart: u64,
     restarts: u64,
     max_learned: usize,
@@ -252,6 +254,7 @@ impl Solver {
             left: Vec::new(),
             num_left: 0,
             is_returning: false,
+            is_failure_counted: false,
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
             max_learned: 4_000,
@@ -453,10 +456,11 @@ impl Solver {
                     self.end_return();
                     let left = self.trail.decisions();
                     self.record_leaf();
+                    let conflicts = self.stats.conflicts;
                     let is_broken = self.is_broken(problem);
                     let sharing = if is_broken { Sharing::Restarted } else { problem.share(self) };
                     if sharing == Sharing::Restarted {
-                        self.leave(left);
+                        self.leave(left, conflicts);
                         self.record_return(problem);
                     } else if sharing == Sharing::Fits {
                         debug_assert!(self.is_solution(problem), "the least times fit");
@@ -464,7 +468,7 @@ impl Solver {
                         match problem.withstand(self, &mut || stop(&stats)) {
                             Some(false) => return Answer::Solved,
                             Some(true) => {
-                                self.leave(left);
+                                self.leave(left, conflicts);
                                 self.record_return(problem);
                             }
                             None => {
@@ -496,13 +500,14 @@ impl Solver {
         Ok(())
     }
 
-    /// Whether propagation alone shows that there is no solution; `None` if it was stopped before. What it finds stays.
+    /// Returns whether propagation alone shows that there is no solution; `None` if it was stopped before. What it
+    /// finds stays.
     pub(crate) fn is_refuted_at_root(&mut self, stop: &mut dyn FnMut() -> bool) -> Option<bool> {
         self.propagate_at_root(stop).ok()?;
         Some(self.is_contradictory)
     }
 
-    /// Whether to stop, by a look at that from time to time; so many steps were made since the last one.
+    /// Returns whether to stop, by a look at that from time to time; so many steps were made since the last one.
     fn is_stopped_after(&mut self, steps: u32, stop: &mut dyn FnMut(&Stats) -> bool) -> bool {
         self.steps += steps;
         if self.steps < STEPS_BETWEEN_LOOKS {
@@ -603,6 +608,7 @@ impl Solver {
         let before = BeforeBurst {
             expanded: self.stats.expanded,
             backtracks: self.stats.backtracks,
+            conflicts: self.stats.conflicts,
             num_left: self.num_left,
             is_returning: self.is_returning,
         };
@@ -625,6 +631,7 @@ impl Solver {
     fn give_up_burst(&mut self, level: u32, before: &BeforeBurst) {
         self.stats.expanded = before.expanded;
         self.stats.backtracks = before.backtracks;
+        self.stats.conflicts = before.conflicts;
         (self.num_left, self.is_returning) = (before.num_left, before.is_returning);
         self.retract(level);
         // The next few decisions are made one by one.
@@ -804,8 +811,9 @@ impl Solver {
         let _ = self.trail.set(option, trail::Cause::Decision);
     }
 
-    /// The decisions are taken back that led to a solution which broke something.
-    fn leave(&mut self, decisions: Vec<Literal>) {
+    /// The decisions are taken back that led to a solution which broke something, before which so many conflicts were counted.
+    fn leave(&mut self, decisions: Vec<Literal>, conflicts: u64) {
+        self.is_failure_counted = self.stats.conflicts > conflicts;
         self.num_left = decisions.len();
         self.left = decisions;
         self.is_returning = true;
@@ -819,6 +827,8 @@ impl Solver {
         }
         let impossible = self.left.iter().position(|&literal| self.trail.fails(literal));
         self.stats.backtracks += u64::from(impossible.is_some());
+        // A solution with these decisions breaks something whatever else is chosen.
+        self.stats.conflicts += u64::from(impossible.is_some() && !self.is_failure_counted);
         self.record_end_of_return(impossible);
     }
 
@@ -856,6 +866,7 @@ impl Solver {
 struct BeforeBurst {
     expanded: u64,
     backtracks: u64,
+    conflicts: u64,
     num_left: usize,
     is_returning: bool,
 }

@@ -146,7 +146,7 @@ impl Record {
         .unwrap_or_default()
     }
 
-    /// What a literal says, if it is a choice that is made.
+    /// Returns what a literal says, if it is a choice that is made.
     fn name(&self, literal: Literal) -> Option<TreeChoice> {
         let named = self.names.get(&literal.side).and_then(|names| names.first());
         named.or_else(|| self.starts.get(&literal)).copied()
@@ -241,6 +241,7 @@ impl Solver {
         let literal = impossible.map(|position| self.left[position]);
         let behind = literal.map(|literal| self.literals_behind(&[!literal], None)).unwrap_or_default();
         let levels: Vec<u32> = behind.iter().map(|&literal| self.level_of(literal)).collect();
+        let is_failure_told = self.is_failure_counted;
         let Some(record) = self.recording() else { return };
         let held = record.held.take().unwrap_or_default();
         let from = record.left.last().copied().unwrap_or(0);
@@ -248,12 +249,16 @@ impl Solver {
         let taken_back = impossible.and_then(|position| state(position + 1));
         if let (Some(taken_back), Some(literal)) = (taken_back, literal) {
             let to = record.at();
-            let choices = behind.iter().chain([&literal]).filter_map(|&it| record.name(it)).collect();
+            let choices: Vec<TreeChoice> =
+                behind.iter().chain([&literal]).filter_map(|&it| record.name(it)).collect();
             let states = levels.into_iter().filter_map(|level| state(level as usize));
             let because = states.chain([taken_back]).collect();
             // What becomes of the root is known at the end of all searches.
             if from != 0 {
                 record.recorder.set_status(from, TreeStatus::Failed);
+            }
+            if !is_failure_told {
+                record.recorder.record(from, Event::Clash { choices: choices.clone() });
             }
             let mut last = record.recorder.trace.events.iter().rev();
             let is_told = last.next().is_some_and(|it| matches!(it.event, Event::Uncontrollable { .. }));
@@ -579,7 +584,7 @@ impl Solver {
         found
     }
 
-    /// Whether what a conflict comes from has to do with a limit on a goal.
+    /// Returns whether what a conflict comes from has to do with a limit on a goal.
     fn rests_on_goal(&self, conflict: &[Literal]) -> bool {
         let level = self.trail.level();
         let is_limited = |literal: Literal| {
@@ -678,7 +683,7 @@ fn told(model: &Model, constraints: &[Constraint], edge: &stn::CycleEdge) -> Opt
     })
 }
 
-/// What a choice adds to the network.
+/// Returns what a choice adds to the network.
 const fn constraint(choice: TreeChoice) -> Option<Constraint> {
     match choice {
         TreeChoice::Decision { .. }

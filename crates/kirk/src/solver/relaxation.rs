@@ -101,7 +101,7 @@ pub(super) fn relax(
     }
 }
 
-/// Whether a variable is a Boolean that nothing has decided.
+/// Returns whether a variable is a Boolean that nothing has decided.
 fn is_open(trail: &Trail, variable: Variable) -> bool {
     (trail.least(variable), trail.most(variable)) == (0, 1)
 }
@@ -146,7 +146,7 @@ fn open_variable(trail: &Trail, literal: Literal) -> Option<Variable> {
     (literal == variable.holds() && is_open(trail, variable)).then_some(variable)
 }
 
-/// What a reservoir can give, and take, in all.
+/// Returns what a reservoir can give, and take, in all.
 pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> [Option<Row>; 2] {
     let ModelSupply::Reservoir { least, greatest, level } = supply else { return [None, None] };
     // What is not active only gives.
@@ -192,8 +192,8 @@ impl Work {
         })
     }
 
-    /// How long it takes at least between two times.
-    fn least_within(&self, from: i64, to: i64) -> i64 {
+    /// Returns how long it takes at least between two times.
+    fn min_within(&self, from: i64, to: i64) -> i64 {
         let begun = self.earliest_start + self.duration - from;
         let ended = to - (self.latest_end - self.duration);
         self.duration.min(to - from).min(begun).min(ended).max(0)
@@ -208,7 +208,7 @@ impl Share {
         Some(Self { capacity, works: works.collect() })
     }
 
-    /// What takes turns shares one place.
+    /// Returns what takes turns shares one place.
     pub(super) fn taking_turns(trail: &Trail, turns: &[Interval]) -> Self {
         let works = turns.iter().filter_map(|&interval| Work::new(trail, interval, 1));
         Self { capacity: 1, works: works.collect() }
@@ -223,7 +223,7 @@ impl Share {
         for from in some_of(self.works.iter().map(|work| work.earliest_start)) {
             for &to in ends.iter().filter(|&&to| to > from) {
                 let work =
-                    |work: &Work| (work.least_within(from, to) as f64) * work.amount as f64 * share_of(work);
+                    |work: &Work| (work.min_within(from, to) as f64) * work.amount as f64 * share_of(work);
                 let room = self.capacity as f64 * (to - from) as f64;
                 let excess = self.works.iter().map(work).sum::<f64>() / room;
                 if excess > 1.0 + 1e-6 {
@@ -240,7 +240,7 @@ impl Share {
     pub(super) fn row(&self, from: i64, to: i64) -> Option<Row> {
         let mut row = Row { terms: BTreeMap::new(), most: self.capacity.checked_mul(to - from)? };
         for work in &self.works {
-            let taken = work.least_within(from, to).checked_mul(work.amount)?;
+            let taken = work.min_within(from, to).checked_mul(work.amount)?;
             match work.variable {
                 Some(variable) if taken > 0 => *row.terms.entry(variable).or_default() += taken,
                 Some(_) => {}

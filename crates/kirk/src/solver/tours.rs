@@ -38,7 +38,7 @@ impl Tours {
     pub(super) fn add(&mut self, movements: Vec<Interval>, durations: &[Vec<Option<i64>>]) -> Vec<usize> {
         let sides = |it: &Interval| [it.start.lower(), it.end.upper(), it.presence.side];
         self.queue.add(movements.iter().flat_map(sides));
-        let (least, order) = least_of_sets(movements.len(), durations);
+        let (least, order) = min_of_sets(movements.len(), durations);
         self.all.push(Tour { movements, least });
         order
     }
@@ -91,12 +91,13 @@ impl Tours {
 }
 
 impl Tour {
-    /// Whether a set of movements does not fit between two times.
+    /// Returns whether a set of movements does not fit between two times.
     fn is_too_much(&self, set: Set, begun: i64, over: i64) -> bool {
         begun.saturating_add(self.least[set]) > over
     }
 
-    /// Why a set does not fit between two times, with one more that is not told to exist: as few of them as it takes.
+    /// Returns why a set does not fit between two times, with one more that is not told to exist: as few of them as it
+    /// takes.
     fn reason(&self, mut set: Set, more: Option<usize>, begun: i64, over: i64) -> Conflict {
         let all = |set: Set| more.map_or(set, |at| set | 1 << at);
         for at in 0..self.movements.len() {
@@ -128,7 +129,7 @@ fn different(numbers: impl Iterator<Item = i64>) -> Vec<i64> {
 
 /// The least time from the first start to the last end of each set of movements, whatever others come before, between and
 /// after them; and the order of all that takes least.
-fn least_of_sets(count: usize, durations: &[Vec<Option<i64>>]) -> (Vec<i64>, Vec<usize>) {
+fn min_of_sets(count: usize, durations: &[Vec<Option<i64>>]) -> (Vec<i64>, Vec<usize>) {
     let direct = |from: usize, to: usize| durations[from][to].unwrap_or(NO_WAY);
     // Between two there may be others, which take their time.
     let mut between: Vec<Vec<i64>> =
@@ -179,7 +180,7 @@ fn least_of_sets(count: usize, durations: &[Vec<Option<i64>>]) -> (Vec<i64>, Vec
 
 #[cfg(test)]
 mod tests {
-    use super::{NO_WAY, least_of_sets};
+    use super::{NO_WAY, min_of_sets};
 
     #[test]
     fn a_set_takes_its_quickest_order() {
@@ -188,7 +189,7 @@ mod tests {
         let durations: Vec<Vec<Option<i64>>> = (0..4)
             .map(|from| (0..3).map(|to| (from != to).then(|| (places[from] - places[to]).abs())).collect())
             .collect();
-        let (least, order) = least_of_sets(3, &durations);
+        let (least, order) = min_of_sets(3, &durations);
         assert_eq!((least[0b111], order), (9, vec![0, 1, 2]));
         // The first of two may start where the third one ends.
         assert_eq!(least[0b110], 4 + 4);
@@ -203,9 +204,9 @@ mod tests {
             vec![Some(2), Some(3), None],
             vec![Some(1); 3],
         ];
-        let (least, _) = least_of_sets(3, &durations);
+        let (least, _) = min_of_sets(3, &durations);
         assert_eq!(least[0b011], 1 + 2 + 3);
         let stuck = vec![vec![None; 3]; 4];
-        assert_eq!(least_of_sets(3, &stuck).0[0b111], NO_WAY);
+        assert_eq!(min_of_sets(3, &stuck).0[0b111], NO_WAY);
     }
 }

@@ -4,7 +4,7 @@ use tpn::Plan;
 
 use super::{Attempt, Searching};
 use crate::partial_order;
-use crate::solver::{Frontier, LeastSums, Problem, Solver, Touching, Visit};
+use crate::solver::{Frontier, MinSums, Problem, Solver, Touching, Visit};
 use crate::trace::Event;
 use crate::unplannable::Unplannable;
 
@@ -32,7 +32,7 @@ impl Searching<'_> {
                 orders: plan.orderings_added.clone(),
                 uses: plan.uses_ordered.clone(),
             });
-            let sums: LeastSums =
+            let sums: MinSums =
                 goals.iter().map(|goal| goal.sum(model, plan)).collect::<Result<_, Unplannable>>()?;
             is_promised = frontier.visited >= sums;
         }

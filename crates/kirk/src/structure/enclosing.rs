@@ -52,8 +52,8 @@ impl Enclosing {
         // How far what leads out of a block leads.
         let mut reach: TiVec<BlockId, Option<(u32, u32)>> = vec![None; blocks.len()].into();
         let extend = |reach: &mut Option<(u32, u32)>, (least, most): (u32, u32)| {
-            let (known_least, known_most) = reach.unwrap_or((least, most));
-            *reach = Some((known_least.min(least), known_most.max(most)));
+            let (known_min, known_most) = reach.unwrap_or((least, most));
+            *reach = Some((known_min.min(least), known_most.max(most)));
         };
         for &(one, other) in partners {
             for (from, to) in [(one, other), (other, one)] {
@@ -79,7 +79,7 @@ impl Enclosing {
         self.has_links[block]
     }
 
-    /// Whether a block is another one or in it.
+    /// Returns whether a block is another one or in it.
     pub(crate) fn has(&self, block: BlockId, inner: BlockId) -> bool {
         let ((first, last), (at, _)) = (self.ranges[block], self.ranges[inner]);
         (first..=last).contains(&at)
@@ -87,7 +87,7 @@ impl Enclosing {
 }
 
 impl Structure {
-    /// Whether the tree has all arcs, less so many.
+    /// Returns whether the tree has all arcs, less so many.
     pub(crate) fn has_all_but(&self, num_constraints: usize) -> bool {
         let mut is_there = vec![false; self.arc_blocks.len()];
         let around = self.blocks.iter().flat_map(|block| [block.around_arcs.0, block.around_arcs.1]);
@@ -116,7 +116,7 @@ impl Structure {
         self.blocks[block].parent.is_none()
     }
 
-    /// Whether a choice is inside of a block.
+    /// Returns whether a choice is inside of a block.
     pub(crate) fn is_inside(&self, enclosing: &Enclosing, decision: DecisionId, block: BlockId) -> bool {
         enclosing.has(block, self.decision_blocks[decision])
     }
@@ -143,7 +143,7 @@ impl Structure {
         Some(block)
     }
 
-    /// What is in a block, of choices that have been made only what was chosen.
+    /// Returns what is in a block, of choices that have been made only what was chosen.
     pub(crate) fn within(&self, block: BlockId, chosen: &BTreeMap<DecisionId, u32>) -> Within {
         let mut within = Within::default();
         let mut left = vec![block];

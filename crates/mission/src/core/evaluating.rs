@@ -125,7 +125,7 @@ impl Core {
     ) -> Option<Result<Evaluated, String>> {
         if rmpl::control::is_control_text(&update.source) {
             return Some(Err(
-                "this is a control program: run it step by step in the Program panel".to_owned()
+                "this is a control program: run it step by step in the Automaton panel".to_owned()
             ));
         }
         let compiled = self.compile(update, host);

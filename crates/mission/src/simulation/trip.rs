@@ -116,20 +116,20 @@ struct LedAround {
 }
 
 impl Neighbor<'_> {
-    /// What it drives at a time, or drove last.
+    /// Returns what it drives at a time, or drove last.
     fn last_move(&self, now: f64) -> Option<&SimulatedVehicle> {
         let has_begun = |it: &&&SimulatedVehicle| it.frames.first().is_some_and(|first| first.time <= now);
         self.moves.iter().rev().find(has_begun).copied()
     }
 
-    /// Where it stands at a time, in mission units, if it does.
+    /// Returns where it stands at a time, in mission units, if it does.
     fn standing_m(&self, now: f64) -> Option<Point2<f64>> {
         let Some(last_move) = self.last_move(now) else { return Some(self.stands_m) };
         let last = last_move.frames.last()?;
         (last.time <= now).then_some(last.position_m)
     }
 
-    /// Where it is at a time, in mission units.
+    /// Returns where it is at a time, in mission units.
     fn place_m(&self, now: f64) -> Point2<f64> {
         self.last_move(now).and_then(|last_move| last_move.place_m(now)).unwrap_or(self.stands_m)
     }
@@ -176,7 +176,7 @@ pub(super) struct Trip<'a> {
     pub(super) extra_meters: Vec<(f64, f64)>,
     /// The same when it is there, or fewer than its path has.
     pub(super) arrived_m: Option<(f64, f64)>,
-    pub(super) least_clearance_m: f64,
+    pub(super) min_clearance_m: f64,
     /// What others had seen when it started, and what is seen on the way.
     known: Vec<Point2<f64>>,
     /// The ways of others, which another way keeps out of where it can.
@@ -225,7 +225,7 @@ impl<'a> Trip<'a> {
                     let away_m = distance(&place, first);
                     if away_m > driving::sets_out_within_m(drive, index) {
                         let name = declared(*vehicle).map_or("?", |it| it.name.text.as_str());
-                        scattered = Some(format!("{name} is {away_m:.0} m from where it is to set out"));
+                        scattered = Some(format!("{name} is {away_m:.0} m from its start position"));
                     }
                     *first = place;
                 }
@@ -341,7 +341,7 @@ impl<'a> Trip<'a> {
             driven_m: 0.0,
             extra_meters: Vec::new(),
             arrived_m: None,
-            least_clearance_m: f64::INFINITY,
+            min_clearance_m: f64::INFINITY,
             known: if flies.first() == Some(&true) { Vec::new() } else { before.seen_m.clone() },
             lanes: &before.lanes,
             flies,
@@ -354,7 +354,7 @@ impl<'a> Trip<'a> {
         }
     }
 
-    /// How far the leader has driven, in meters.
+    /// Returns how far the leader has driven, in meters.
     pub(super) const fn driven_m(&self) -> f64 {
         self.driven_m
     }
@@ -378,12 +378,12 @@ impl<'a> Trip<'a> {
             }
             steps_left -= 1;
             if time_s > most_s {
-                return Err(format!("{} after {:.0} times the time planned", self.stuck(0), MAX_TIMES));
+                return Err(format!("{} after {:.0} times the planned duration", self.stuck(0), MAX_TIMES));
             }
             let now = self.start + time_s / self.unit_s;
             let has_changed = self.change_world(time_s, now);
             let others = self.others_from(now);
-            let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
+            let most: Vec<f64> = (0..self.models.len()).map(|index| self.max_speed_mps(index)).collect();
             let Layers { ground: world, air } = &self.world;
             let around = Surroundings { world, air, has_changed, maps: &self.maps, others: &others };
             let before = self.convoy.state(0).position_m;
@@ -405,7 +405,8 @@ impl<'a> Trip<'a> {
         Ok(())
     }
 
-    /// What has appeared by now is in the world, and vehicles that stand are where they do. Returns whether it has changed.
+    /// Returns what has appeared by now is in the world, and vehicles that stand are where they do. Returns whether it
+    /// has changed.
     fn change_world(&mut self, time_s: f64, now: f64) -> bool {
         let mut has_changed = false;
         while let Some((_, obstacle, low)) = self.coming.pop_if(|(at_s, ..)| *at_s <= time_s) {
@@ -430,7 +431,7 @@ impl<'a> Trip<'a> {
         has_changed
     }
 
-    /// Where others that move are now and will be soon. What is far away does not count.
+    /// Returns where others that move are now and will be soon. What is far away does not count.
     fn others_from(&self, now: f64) -> Vec<OtherVehicle> {
         let here_m = self.convoy.state(0).position_m;
         let other = |neighbor: &Neighbor<'_>| {
@@ -469,8 +470,8 @@ impl<'a> Trip<'a> {
         (self.convoy.remaining_m() / left_s).clamp(least, greatest)
     }
 
-    /// How fast a vehicle can be where it is: by the traverse, its slope, and what slows it down.
-    fn greatest_speed_mps(&self, index: usize) -> f64 {
+    /// Returns how fast a vehicle can be where it is: by the traverse, its slope, and what slows it down.
+    fn max_speed_mps(&self, index: usize) -> f64 {
         let state = self.convoy.state(index);
         let gradient = self.map.gradient_at(state.position_m).unwrap_or_default();
         let grade = gradient.dot(&(state.world_from_body() * Vector2::x()));
@@ -702,11 +703,11 @@ impl<'a> Trip<'a> {
         for (index, (model, flies)) in self.models.iter().zip(&self.flies).enumerate() {
             let place = self.convoy.state(index).position_m;
             let away_m = self.world.of(*flies).around(place, 12.0).distance_m(place) - model.circumradius_m;
-            self.least_clearance_m = self.least_clearance_m.min(away_m);
+            self.min_clearance_m = self.min_clearance_m.min(away_m);
         }
     }
 
-    /// Whether others are so near a vehicle that contact is told by every step.
+    /// Returns whether others are so near a vehicle that contact is told by every step.
     fn is_close_to_others(&self, vehicle: usize) -> bool {
         let own_m = self.models[vehicle].circumradius_m + CLOSE_M;
         let here = self.convoy.state(vehicle).position_m;

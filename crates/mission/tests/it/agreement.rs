@@ -89,7 +89,7 @@ fn paths_that_cross_are_reported_with_a_schedule_in_which_their_vehicles_meet() 
         panic!("{:?}", found.separation_violations)
     };
     assert_eq!(violation.vehicles, [0, 1]);
-    assert!(violation.distance_m < violation.least_m);
+    assert!(violation.distance_m < violation.min_m);
     let crossing = nalgebra::Point2::new(44.0, 54.0);
     assert!(distance(&violation.position_m, &crossing) < 5.0, "{}", violation.position_m);
     // The other one sets out when the first is long past, whatever nature chooses: 2 to 30 min, and 31 min later.
@@ -216,7 +216,7 @@ fn clearance_is_that_of_all_vehicles_of_a_formation() {
         )
     };
     let drives = run("R1, R2, R3");
-    assert!(drives[0].least_clearance_m > together_m - 0.5, "{} m", drives[0].least_clearance_m);
+    assert!(drives[0].min_clearance_m > together_m - 0.5, "{} m", drives[0].min_clearance_m);
 }
 
 #[test]

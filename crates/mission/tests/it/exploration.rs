@@ -26,7 +26,7 @@ fn violations(execution: &Execution) -> Vec<&str> {
         .collect()
 }
 
-/// What the run tells of an activity on its way.
+/// Returns what the run tells of an activity on its way.
 fn told<'a>(execution: &'a Execution, activity: &str) -> Vec<&'a str> {
     let text = |entry: &'a executive::Entry| match &entry.happening {
         Happening::Progress { name, text } if name == activity => Some(text.as_str()),
@@ -58,7 +58,7 @@ fn rovers_and_a_blimp_explore_from_the_base_to_the_last_report() {
     assert_eq!(ran.drives.len(), 8);
     assert!(ran.drives.iter().all(|drive| drive.duration.is_some()));
     let flights = ran.drives.iter().filter(|drive| drive.vehicles[0].vehicle == 3);
-    let flown: Vec<f64> = flights.map(|drive| drive.least_clearance_m).collect();
+    let flown: Vec<f64> = flights.map(|drive| drive.min_clearance_m).collect();
     assert_eq!(flown, [f64::INFINITY; 3], "nothing stands as high as a blimp flies");
 }
 
@@ -158,10 +158,10 @@ fn what_only_sonars_hear_is_driven_around_and_shared() {
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     for drive in &ran.drives {
         assert!(
-            drive.least_clearance_m > 0.0,
+            drive.min_clearance_m > 0.0,
             "{} touches it: {} m",
             drive.occurrence.index(),
-            drive.least_clearance_m
+            drive.min_clearance_m
         );
     }
     let rays = ran.drives[0].vehicles[0].frames.iter().flat_map(|frame| &frame.rays_m);

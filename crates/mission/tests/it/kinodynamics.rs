@@ -26,7 +26,7 @@ fn plan(clause: &str, bounds: &str) -> Planned {
 }
 
 /// The least duration of the drive in seconds.
-fn least_s(planned: &Planned) -> f64 {
+fn min_s(planned: &Planned) -> f64 {
     let plan = planned.planning.outcome.plans.first().expect("there is a plan");
     let drive = planned.network.occurrences.iter().find(|it| it.name == "Drive#1").expect("it drives");
     let earliest = |node: tpn::NodeId| plan.windows[node.index()].expect("selected").earliest;
@@ -44,16 +44,16 @@ fn a_kinodynamic_way_takes_as_long_as_turning_and_stopping_within_the_limits() {
     let first = path.points_m[1] - path.points_m[0];
     // Driven state by state, and facing the wrong way at first.
     let driven = motion::drive_path(&path, libm::atan2(first.y, first.x) + std::f64::consts::PI, &slower);
-    let (planned_s, driven_s) = (least_s(&limited), driven.duration_s());
+    let (planned_s, driven_s) = (min_s(&limited), driven.duration_s());
     assert!((driven_s - 0.001..driven_s + 2.0).contains(&planned_s), "{planned_s} s and {driven_s} s");
     let straight_s = path.length_m() / 0.6;
     assert!(planned_s > straight_s + 10.0, "{planned_s} s, and {straight_s} s without turning");
-    assert!(least_s(&free) < straight_s + 2.0, "{} s", least_s(&free));
+    assert!(min_s(&free) < straight_s + 2.0, "{} s", min_s(&free));
 }
 
 #[test]
 fn a_way_that_has_no_time_for_its_turns_cannot_be_driven() {
-    let between = f64::midpoint(least_s(&plan("", "")), least_s(&plan("kinodynamic", "")));
+    let between = f64::midpoint(min_s(&plan("", "")), min_s(&plan("kinodynamic", "")));
     let bounds = format!("[0,{}]", between.round());
     assert_eq!(plan("", &bounds).planning.outcome.plans.len(), 1);
     let none = plan("kinodynamic", &bounds);
@@ -82,7 +82,7 @@ fn what_is_driven_keeps_the_limits_and_the_planned_time() {
             executive::Happening::Executed { name } if name == "Drive#1.end" => Some(entry.time.to_f64()),
             _ => None,
         });
-        let planned_s = least_s(&planned);
+        let planned_s = min_s(&planned);
         assert!(end.is_some_and(|end| end < 1.05 * planned_s), "{end:?} and {planned_s} s planned");
     });
 }

@@ -70,7 +70,7 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                 let duration = drive.duration.unwrap_or_else(|| panic!("seed {seed}: a drive is given up\n{source}"));
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
                 let bounds = [
-                    motion::driven_at_least_m(length_m, followers, traverse.rocks),
+                    motion::min_driven_m(length_m, followers, traverse.rocks),
                     motion::driven_at_most_m(length_m, followers, traverse.rocks),
                 ];
                 assert!(
@@ -78,7 +78,7 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                     "seed {seed}: {} m along {length_m} m with {followers} followers; {bounds:?} are counted\n{source}",
                     drive.driven_m
                 );
-                let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+                let least: f64 = traverse.leg_figures.iter().map(|leg| leg.min_duration.to_f64()).sum();
                 let within_s = motion::driven_within_s(least * 60.0, speed_mps, followers, traverse.rocks);
                 let took_s = duration.to_f64() * 60.0;
                 assert!(took_s <= within_s, "seed {seed}: {took_s} s, where {within_s} s are counted\n{source}");

@@ -86,7 +86,7 @@ fn to_nearest(point: Point2<f64>, squares: &[Point2<f64>], half: f64) -> f64 {
     squares.iter().map(to_square).fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// Whether two segments cross inside both.
+/// Returns whether two segments cross inside both.
 fn cross(a: [Point2<f64>; 2], b: [Point2<f64>; 2]) -> bool {
     let side = |from: Point2<f64>, to: Point2<f64>, point: Point2<f64>| {
         (to[0] - from[0]) * (point[1] - from[1]) - (to[1] - from[1]) * (point[0] - from[0])
@@ -173,7 +173,7 @@ fn vertices_of_the_network_are_those_of_the_path_and_their_times_follow_from_len
         assert!((-1e-9..1.0 / 60_000.0 + 1e-9).contains(&over), "{over} over {greatest}");
     }
     let sum = Time::checked_sum(arcs.iter().map(|arc| arc.lower));
-    let figures = traverse.leg_figures.iter().map(|figures| figures.least_duration);
+    let figures = traverse.leg_figures.iter().map(|figures| figures.min_duration);
     assert_eq!(sum, Time::checked_sum(figures));
     assert!(sum.is_some());
 }
@@ -204,7 +204,7 @@ fn a_slope_makes_a_traverse_take_longer_and_a_steep_one_cannot_be_driven() {
         planner.grounds.import("ramp", &ramp(grade)).expect("it can be read");
         planner.plan(source, 1)
     };
-    let least = |grade: f64| climb(grade).planned.traverses[0].leg_figures[0].least_duration;
+    let least = |grade: f64| climb(grade).planned.traverses[0].leg_figures[0].min_duration;
     assert_eq!(least(0.0), Time::from(50));
     // 40 m up a grade of 0.182, half of the greatest: a little longer, and at 0.6 m/s instead of 0.8.
     let time = least(0.182);
@@ -503,7 +503,7 @@ fn beside_an_area(closed_to: &str) -> String {
     )
 }
 
-/// Whether a point is in that area, or nearer to it than `radius_m`.
+/// Returns whether a point is in that area, or nearer to it than `radius_m`.
 fn is_in_the_area(point: Point2<f64>, radius_m: f64) -> bool {
     (40.0 - radius_m..60.0 + radius_m).contains(&point.x)
         && (-30.0 - radius_m..70.0 + radius_m).contains(&point.y)

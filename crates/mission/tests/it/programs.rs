@@ -477,6 +477,6 @@ fn a_control_block_may_set_the_length_of_its_steps() {
     let twice = format!("option control_step = 2;\n{}", with("(DEFSTEP 30s)"));
     assert_eq!(
         diagnostics(&twice),
-        ["E-DUP the mission sets the length of a step before: `option control_step`"]
+        ["E-DUP the mission already sets the step length: `option control_step`"]
     );
 }

@@ -69,7 +69,7 @@ fn an_undisturbed_rover_drives_its_path_in_about_the_planned_time_and_touches_no
     assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
     assert!(violations(&execution).is_empty());
     let [drive] = execution.drives.as_slice() else { panic!("one traverse is driven") };
-    assert!(drive.least_clearance_m > 0.0, "{}", drive.least_clearance_m);
+    assert!(drive.min_clearance_m > 0.0, "{}", drive.min_clearance_m);
     let frames = &drive.vehicles[0].frames;
     assert!(distance(&frames[0].position_m, &Point2::new(116.0, 72.0)) < 0.01);
     let last = frames.last().expect("there are frames");
@@ -130,7 +130,7 @@ fn a_rock_that_appears_on_the_path_is_seen_and_passed() {
     let nearest = frames.iter().map(|frame| distance(&frame.position_m, &rock)).fold(f64::INFINITY, f64::min);
     assert!(nearest >= 0.8 + ATRV_M, "it touches the rock: {nearest}");
     assert!(nearest < 4.0, "the rock is beside the way: {nearest}");
-    assert!(drive.least_clearance_m >= 0.0);
+    assert!(drive.min_clearance_m >= 0.0);
     assert!(duration(drive) >= duration(&free.drives[0]) - 0.1);
     let seen = frames.iter().flat_map(|frame| &frame.rays_m);
     let on_rock = seen.filter(|point| (distance(&point.cast::<f64>(), &rock) - 0.8).abs() < 0.1);
@@ -150,7 +150,7 @@ fn a_closed_gap_is_reported_and_another_way_taken_which_takes_longer() {
         "{:?}",
         behind.log.last()
     );
-    assert!(behind.drives[0].reroutes >= 1 && behind.drives[0].least_clearance_m >= 0.0);
+    assert!(behind.drives[0].reroutes >= 1 && behind.drives[0].min_clearance_m >= 0.0);
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_convoy_makes_good_what_it_lost_where_the_plan_leaves_time_and_fails_where_i
     assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
     assert!(violations(&execution).is_empty());
     let drive = &execution.drives[0];
-    assert!(drive.least_clearance_m >= 0.0, "{}", drive.least_clearance_m);
+    assert!(drive.min_clearance_m >= 0.0, "{}", drive.min_clearance_m);
     // The traverse takes 405 minutes at least by its bounds, and about 253 at full speed.
     assert!(duration(drive) <= 406.0, "{}", duration(drive));
     let motions = &execution.plans[0].motions;

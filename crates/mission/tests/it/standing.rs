@@ -23,7 +23,7 @@ fn plan(rest: &str) -> Planned {
     planned
 }
 
-/// Where the vehicles that move are at a time.
+/// Returns where the vehicles that move are at a time.
 fn places(planned: &Planned, time: f64) -> Vec<Point2<f64>> {
     planned.motions.iter().map(|motion| motion.at(time).expect("it moves").0).collect()
 }
@@ -99,7 +99,7 @@ fn a_formation_whose_vehicles_are_apart_does_not_set_out() {
          scenario S[0,400] = { FIRST Convoy(B) }";
     let executed = |first: &str| Mission::read(&source.replace("FIRST", first)).executed(0, &[]);
     let apart = executed("");
-    let gives_up = |happening: &Happening| matches!(happening, Happening::Progress { text, .. } if text.starts_with("F is 4") && text.ends_with(" m from where it is to set out, and gives up"));
+    let gives_up = |happening: &Happening| matches!(happening, Happening::Progress { text, .. } if text.starts_with("F is 4") && text.ends_with(" m from its start position, and gives up"));
     assert!(apart.log.iter().any(|it| gives_up(&it.happening)), "{:?}", apart.log);
     let follower = &apart.drives[0].vehicles[1];
     assert!(follower.frames.iter().all(|it| it.position_m == Point2::new(40.0, 10.0)), "{follower:?}");
@@ -217,7 +217,7 @@ scenario S[0,99] = { Drive(B); Drive(B) }",
         let least: Vec<f64> = planned
             .traverses
             .iter()
-            .map(|it| it.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum())
+            .map(|it| it.leg_figures.iter().map(|leg| leg.min_duration.to_f64()).sum())
             .collect();
         assert!(least[0] > 60.0 / 0.4 / 60.0 && least[1] == 0.0, "{least:?}");
         let plan = &planned.planning.outcome.plans[0];

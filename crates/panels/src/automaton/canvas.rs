@@ -10,9 +10,9 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::window::WindowCommand;
 
 use super::{Drawn, Shown, legend, log, marks};
-use crate::Context;
 use crate::network::view::View;
 use crate::painter::DisplayPainter;
+use crate::{Context, counted};
 
 /// Where the drawing is scrolled to.
 #[derive(Default)]
@@ -48,8 +48,8 @@ impl Canvas {
     ) {
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let name = format!(
-            "Automaton. {} locations. Step {}, active: {}.",
-            shown.automaton.locations.len(),
+            "Automaton. {}. Step {}, active: {}.",
+            counted(shown.automaton.locations.len() as u64, "location"),
             shown.moment.upcoming.step,
             log::marked_text(shown.automaton, shown.moment)
         );
@@ -164,7 +164,7 @@ impl Canvas {
     }
 }
 
-/// Where the marks of a step are; where those have no room together, what is asserted there.
+/// Returns where the marks of a step are; where those have no room together, what is asserted there.
 fn part_that_matters(
     shown: Shown<'_>,
     drawing: &AutomatonDrawing,
@@ -190,7 +190,7 @@ fn with_legend(mut bounds: display::Rect) -> display::Rect {
     bounds
 }
 
-/// What something on the drawing means, in a sentence.
+/// Returns what something on the drawing means, in a sentence.
 fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
     match item {
         AutomatonItem::Location(id) => {

@@ -12,7 +12,7 @@ use workbench::state::diagnosing::{
 };
 
 use super::title;
-use crate::Context;
+use crate::{Context, counted};
 
 /// From a node to its children, in points.
 const INDENT: f32 = 16.0;
@@ -174,10 +174,12 @@ fn result(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment
     }
     let (states, explained) = (agreement.states, agreement.explained);
     let text = if states == explained {
-        format!("The estimator agrees: each of its {states} states includes a diagnosis.")
+        let states = counted(states as u64, "state");
+        format!("The estimator agrees: {states}, and each includes a diagnosis.")
     } else {
         format!(
-            "The estimator disagrees: {} of its {states} states include no diagnosis.",
+            "The estimator disagrees: {}, of which {} without a diagnosis.",
+            counted(states as u64, "state"),
             states - explained
         )
     };

@@ -96,7 +96,8 @@ fn answer(
                 ui.label(RichText::new(format!("✓ {property}")).color(tokens.good));
             }
             Verdict::Open => {
-                let text = format!("? {property}: open, no counterexample within {} steps", found.depth);
+                let text =
+                    format!("? {property}: open, no counterexample within {}", counted(found.depth, "step"));
                 ui.label(RichText::new(text).color(tokens.warning));
             }
             Verdict::Never(what) => {

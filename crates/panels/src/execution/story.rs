@@ -9,7 +9,7 @@ use theme::icon::Icon;
 use workbench::state::execution::has_come;
 use workbench::time_text;
 
-use crate::plan::counted;
+use crate::counted;
 
 /// An event of the story that the timeline marks.
 pub(crate) struct Turn {

@@ -1,5 +1,6 @@
 //! What the tooltip says of an item, and what a screen reader says of the whole.
 
+use crate::counted;
 use exact::Bound;
 use layout::text::{bounds_label, label_words};
 use layout::{Item, NetworkDrawing};
@@ -112,8 +113,10 @@ fn describe_node(id: tpn::NodeId, network: &Network, plan: Option<&Plan>) -> Opt
         let count = network.decisions.get(decision.index()).map_or(0, |it| it.alternatives.len());
         let chosen = plan.and_then(|plan| plan.choices.iter().find(|choice| choice.decision == decision));
         lines.push(match chosen {
-            Some(choice) => format!("{count} alternatives, {} chosen", choice.alternative),
-            None => format!("{count} alternatives"),
+            Some(choice) => {
+                format!("{}, {} chosen", counted(count as u64, "alternative"), choice.alternative)
+            }
+            None => counted(count as u64, "alternative"),
         });
     }
     lines.extend(node.events.iter().skip(1).map(|&event| network.event_name(event)));

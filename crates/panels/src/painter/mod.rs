@@ -58,24 +58,24 @@ impl Placement {
     /// That of a drawing whose frame is the screen.
     pub const SCREEN: Self = Self { point: Point::new(0.0, 0.0), at: Pos2::ZERO, zoom: 1.0 };
 
-    /// Where a point of the drawing is on the screen.
+    /// Returns where a point of the drawing is on the screen.
     pub fn screen_point(&self, point: Point) -> Pos2 {
         let offset = ((point.x - self.point.x) * self.zoom, (point.y - self.point.y) * self.zoom);
         self.at + vec2(offset.0 as f32, offset.1 as f32)
     }
 
-    /// Where a rectangle of the drawing is on the screen.
+    /// Returns where a rectangle of the drawing is on the screen.
     pub fn screen_rect(&self, rect: display::Rect) -> Rect {
         Rect::from_min_max(self.screen_point(rect.min), self.screen_point(rect.max))
     }
 
-    /// What point of the drawing is at a place of the screen.
+    /// Returns what point of the drawing is at a place of the screen.
     pub fn drawing_point(&self, position: Pos2) -> Point {
         let offset = position - self.at;
         self.point.shifted(f64::from(offset.x) / self.zoom, f64::from(offset.y) / self.zoom)
     }
 
-    /// What part of the drawing is in a part of the screen.
+    /// Returns what part of the drawing is in a part of the screen.
     pub fn drawing_rect(&self, area: Rect) -> display::Rect {
         display::Rect { min: self.drawing_point(area.min), max: self.drawing_point(area.max) }
     }
@@ -110,7 +110,7 @@ impl InView {
 /// How the lines of a group are drawn.
 #[derive(Clone, Copy)]
 struct Lines {
-    least_width: f32,
+    min_width: f32,
     strength: f32,
     is_crowded: bool,
 }
@@ -133,7 +133,7 @@ impl<'a> DisplayPainter<'a> {
         self.visible
     }
 
-    /// What is too small to be drawn, in drawing units.
+    /// Returns what is too small to be drawn, in drawing units.
     pub fn min_size(&self) -> f64 {
         MIN_SHAPE / self.placement.zoom
     }
@@ -173,7 +173,7 @@ impl<'a> DisplayPainter<'a> {
             return;
         }
         let strength = if group.is_dense { (zoom / DENSE.0).clamp(DENSE.1, 1.0) as f32 } else { 1.0 };
-        let lines = Lines { least_width: group.min_size, strength, is_crowded };
+        let lines = Lines { min_width: group.min_size, strength, is_crowded };
         let mut level = LevelLines::default();
         let mut hatching = Mesh::default();
         for item in items {
@@ -227,7 +227,7 @@ impl<'a> DisplayPainter<'a> {
         let width = stroke.width;
         let seen = (width * self.placement.zoom).clamp(0.35 * width + 0.25, 2.0 * width) as f32;
         let color = if lines.strength < 1.0 { color.gamma_multiply(lines.strength) } else { color };
-        egui::Stroke::new(seen.max(lines.least_width), color)
+        egui::Stroke::new(seen.max(lines.min_width), color)
     }
 
     fn rectangle(
@@ -282,7 +282,7 @@ impl<'a> DisplayPainter<'a> {
 
     fn circle(&self, center: Point, radius: f64, item: &Item, lines: Lines) {
         let center = self.placement.screen_point(center);
-        let radius = ((radius * self.placement.zoom) as f32).max(lines.least_width.max(1.0));
+        let radius = ((radius * self.placement.zoom) as f32).max(lines.min_width.max(1.0));
         let fill = item.fill.map(|fill| self.color(fill.color()));
         let line = item.stroke.map(|stroke| self.stroke(stroke, lines));
         match (fill, line) {

@@ -11,6 +11,7 @@ use tpn::{LabelId, Network, Plan};
 use workbench::command::{Command, CommandSender};
 use workbench::state::{Selection, Status};
 
+use crate::counted;
 use crate::{Context, Panel, show_empty};
 
 /// Lists of more rows are made as far as they are on screen.
@@ -98,11 +99,6 @@ fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             }
         });
     });
-}
-
-/// A number with its noun, in the plural where it belongs.
-pub fn counted(count: u64, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
 /// The title of a section.

@@ -65,7 +65,7 @@ pub(super) fn all(ui: &mut Ui, context: &Context<'_>, review: &Review, commands:
     ui.horizontal_wrapped(|ui| {
         let has_plan = review.is_planned();
         let button = ui.add_enabled(has_plan, Button::new("Contradict all"));
-        let hint = "Look for counterexamples of every passed item";
+        let hint = "Look for counterexamples to all passed items";
         if button.on_hover_text(hint).on_disabled_hover_text("No plan to contradict").clicked() {
             commands.send(Command::Contradict(ContradictCommand::Start(None)));
         }

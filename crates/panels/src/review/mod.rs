@@ -16,6 +16,7 @@ mod row;
 mod rules;
 mod verdict;
 
+use crate::counted;
 use std::collections::{BTreeMap, BTreeSet};
 
 use egui::{Frame, Margin, ScrollArea, Ui};
@@ -175,7 +176,7 @@ impl ReviewPanel {
     }
 }
 
-/// Whether the review that is shown is of another content than the present one.
+/// Returns whether the review that is shown is of another content than the present one.
 fn is_stale(context: &Context<'_>) -> bool {
     let state = context.state;
     state.review.shown().is_some_and(|(_, is_stale)| is_stale)
@@ -200,13 +201,13 @@ fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'stat
     }
 }
 
-/// How the lines of a section stand, in words.
+/// Returns how the lines of a section stand, in words.
 fn section_note(statuses: &[Status], section: Section) -> String {
     if statuses.is_empty() {
         return String::new();
     }
     if section == Section::Events {
-        return format!("{} events, tightest first", statuses.len());
+        return format!("{}, tightest first", counted(statuses.len() as u64, "event"));
     }
     [Status::Failed, Status::Attention, Status::Passed, Status::Information]
         .into_iter()

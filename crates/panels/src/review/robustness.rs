@@ -6,14 +6,14 @@ use workbench::command::CommandSender;
 use workbench::registry;
 
 use super::row;
-use crate::Context;
+use crate::{Context, counted};
 
 /// The command that makes the runs.
 const COMMAND: &str = "execute.sample";
 /// Events that are named.
 const MAX_EVENTS: usize = 5;
 
-/// What the heading says.
+/// Returns what the heading says.
 pub(super) fn note(figures: Option<&Robustness>) -> String {
     match figures {
         None => "not run yet".to_owned(),
@@ -67,8 +67,10 @@ pub(super) fn show(
     );
     for (event, breaks) in tally.worst_events().into_iter().take(MAX_EVENTS) {
         let text = format!(
-            "{event} missed its window {} times; {} of these ended the mission. {}",
-            breaks.violations, breaks.stops, breaks.example
+            "{event} missed its window {}; {} of these ended the mission. {}",
+            counted(breaks.violations, "time"),
+            breaks.stops,
+            breaks.example
         );
         row::muted(ui, context, &text);
     }

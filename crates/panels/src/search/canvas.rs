@@ -17,7 +17,7 @@ use workbench::state::search::{Share, wording};
 use super::items;
 use super::merged::{self, Merged};
 use super::tree::{TreeDrawing, TreeIndex};
-use crate::Context;
+use crate::{Context, counted};
 
 /// Where the tree is looked at from.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ pub struct View {
     scroll: egui::Vec2,
     fits: bool,
     /// What fits must leave states at least this far apart downwards; else the goal is looked at from near.
-    least_down: f32,
+    min_down: f32,
     /// The state that was last brought into view.
     followed: Option<TreeNodeId>,
     /// Whether the tree itself has the keyboard.
@@ -41,7 +41,7 @@ impl Default for View {
             cell: vec2(34.0, 46.0),
             scroll: egui::Vec2::ZERO,
             fits: true,
-            least_down: MIN_DOWN,
+            min_down: MIN_DOWN,
             followed: None,
             has_focus: false,
         }
@@ -101,7 +101,7 @@ impl Tree<'_> {
         }
     }
 
-    /// Whether a state is known at the step: at that of either search, if two are merged.
+    /// Returns whether a state is known at the step: at that of either search, if two are merged.
     pub(super) fn is_known(&self, id: TreeNodeId) -> bool {
         match &self.merged {
             Some(merged) => merged.is_known(id),
@@ -109,7 +109,7 @@ impl Tree<'_> {
         }
     }
 
-    /// What has come of a state by the step.
+    /// Returns what has come of a state by the step.
     pub(super) fn status(&self, id: TreeNodeId) -> TreeStatus {
         match &self.merged {
             Some(merged) => merged.status(id),
@@ -186,7 +186,7 @@ impl View {
             ViewAction::ZoomIn => self.zoom_at(rect.center(), rect, 1.25),
             ViewAction::ZoomOut => self.zoom_at(rect.center(), rect, 0.8),
             ViewAction::ZoomReset => (self.cell, self.fits, self.followed) = (CELL, false, None),
-            ViewAction::Fit => (self.fits, self.least_down) = (true, 0.0),
+            ViewAction::Fit => (self.fits, self.min_down) = (true, 0.0),
             // As at first, and from there to the step.
             ViewAction::FitSelection => *self = Self::default(),
             ViewAction::TopView | ViewAction::Follow | ViewAction::Tour => {}
@@ -207,7 +207,7 @@ impl View {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let count = tree.trace.tree.len();
         response.widget_info(|| {
-            let name = format!("{}: search tree of {count} states", tree.name);
+            let name = format!("{}: search tree of {}", tree.name, counted(count as u64, "state"));
             egui::WidgetInfo::labeled(egui::Role::Tree, true, name)
         });
         self.has_focus = response.has_focus();
@@ -258,7 +258,7 @@ impl View {
             let room = rect.size() - 2.0 * MARGIN;
             let across = room.x / (tree.drawing.width + 0.6).max(1.0);
             let down = room.y / tree.drawing.depth().max(1.0);
-            if down < self.least_down {
+            if down < self.min_down {
                 self.look_at_goal(rect, tree);
                 return;
             }
@@ -555,7 +555,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether a state is drawn without what is below it.
+    /// Returns whether a state is drawn without what is below it.
     fn is_folded(&self, id: TreeNodeId) -> bool {
         let children = self.tree.index.children(id);
         !children.is_empty()
@@ -615,7 +615,7 @@ impl Scene<'_> {
         Some(at.right())
     }
 
-    /// What the label of a state says where there is room for all, and what it says with less room.
+    /// Returns what the label of a state says where there is room for all, and what it says with less room.
     fn label_forms(&self, id: TreeNodeId) -> Vec<String> {
         let choice = self.tree.trace.tree[id as usize].choice;
         let (name, short) = (self.tree.label(choice), short_label(self.tree.network, choice));
@@ -637,7 +637,7 @@ impl Scene<'_> {
         forms
     }
 
-    /// What the goals may become in a state, where the search goes by that.
+    /// Returns what the goals may become in a state, where the search goes by that.
     fn bound(&self, id: TreeNodeId) -> Option<String> {
         let bounded = self.tree.index.bounded(self.tree.trace, id, self.tree.step())?;
         let (Event::Bound { values } | Event::Visit { values, .. }) = bounded else { return None };

@@ -5,7 +5,7 @@ use workbench::state::search::Recording;
 use workbench::state::search::focus::is_failure;
 use workbench::state::search::wording::{cycle_step, event};
 
-use crate::Context;
+use crate::{Context, counted};
 
 /// Says what happens at the step that is looked at.
 pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
@@ -18,8 +18,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
             (true, true) => "; later steps were not recorded",
         };
         let text = format!(
-            "{} steps recorded{more}. Press . to step, or click a state of the tree.",
-            recording.steps()
+            "{} recorded{more}. Press . to step, or click a state of the tree.",
+            counted(recording.steps() as u64, "step")
         );
         ui.label(egui::RichText::new(text).color(tokens.text_muted));
         return;

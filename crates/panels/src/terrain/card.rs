@@ -130,7 +130,7 @@ pub fn path_rows(
         rows.push(("This leg", format!("to {}, {}", leg.to, meters(figures.length_m))));
         rows.push(("Leg clearance", room(figures.min_clearance_m)));
         rows.push(("Leg steepest slope", format!("{:.0}°", figures.max_slope_deg)));
-        rows.push(("Leg minimum duration", format!("{} {unit}", time_text::short(figures.least_duration))));
+        rows.push(("Leg minimum duration", format!("{} {unit}", time_text::short(figures.min_duration))));
     }
     rows
 }
@@ -206,7 +206,7 @@ pub fn show_measurement(
     })
 }
 
-/// Where the card of a traverse points: the place that was clicked if it is on it still, otherwise its middle.
+/// Returns where the card of a traverse points: the place that was clicked if it is on it still, otherwise its middle.
 pub fn path_anchor(traverse: &Traverse, clicked_m: Option<Vec2>) -> Option<Vec2> {
     let points: Vec<Vec2> = path_points(traverse).collect();
     clicked_m.or_else(|| points.get(points.len() / 2).copied())

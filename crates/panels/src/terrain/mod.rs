@@ -140,7 +140,7 @@ impl Panel for TerrainPanel {
 }
 
 impl TerrainPanel {
-    /// What is left out of the image.
+    /// Returns what is left out of the image.
     const fn savings(&self, view: &TerrainView) -> Savings {
         match view.effects {
             Effects::Automatic => self.pace.savings(),
@@ -379,7 +379,7 @@ impl TerrainPanel {
     }
 }
 
-/// Whether a camera has only come nearer or gone away, which following a vehicle survives.
+/// Returns whether a camera has only come nearer or gone away, which following a vehicle survives.
 fn is_zoomed(before: &Camera, after: &Camera) -> bool {
     before.distance_m != after.distance_m
 }
@@ -403,14 +403,14 @@ fn sun(context: &Context<'_>, view: &TerrainView) -> Sun {
     time_of_day_secs.map_or_else(|| Sun::fixed(fixed.azimuth_deg, fixed.height_deg), Sun::at_time_of_day)
 }
 
-/// What the measuring tool has measured, if it has two places.
+/// Returns what the measuring tool has measured, if it has two places.
 fn measurement(context: &Context<'_>, map: &Terrain) -> Option<Measurement> {
     let terrain = &context.state.terrain;
     let [from, to] = terrain.points_m.as_slice() else { return None };
     (terrain.tool == Tool::Measure).then(|| Measurement::new(map, [*from, *to])).flatten()
 }
 
-/// What a screen reader says of the image.
+/// Returns what a screen reader says of the image.
 fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measurement>) -> String {
     let time = context.state.playback.time;
     let mut text = format!("Time {time:.0}.");
@@ -440,15 +440,15 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
     text
 }
 
-/// What a vehicle sees of a location.
+/// Returns what a vehicle sees of a location.
 fn sight_words(snapshot: &Snapshot, sight: &tpn::Sight) -> String {
     let variable = snapshot.network.as_ref().and_then(|it| it.variables.get(sight.variable.index()));
     let vehicle = variable.map_or("A vehicle", |it| it.name.trim_end_matches(".at"));
     if sight.hidden.is_empty() {
-        return format!(" {vehicle} sees {} from everywhere.", sight.location);
+        return format!(" {vehicle} sees {} from every location.", sight.location);
     }
     let reasons: Vec<String> = sight.hidden.iter().map(tpn::Hidden::reason).collect();
-    format!(" {vehicle} does not see {} from everywhere: {}.", sight.location, reasons.join(", "))
+    format!(" {vehicle} does not see {} from every location: {}.", sight.location, reasons.join(", "))
 }
 
 /// A mission without places: what to write, and a button that writes it.

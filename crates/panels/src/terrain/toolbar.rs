@@ -76,7 +76,7 @@ fn show_menu(
         (
             &mut view.data_only,
             "Data only",
-            "No ground detail, shadows, wheel tracks, sky and heights of obstacles",
+            "Hide ground detail, shadows, wheel tracks, sky and obstacle heights",
         ),
     ] {
         ui.checkbox(value, name).on_hover_text(help);
@@ -118,7 +118,7 @@ fn sun_menu(ui: &mut Ui, context: &Context<'_>, sun: &mut SunView, commands: &mu
         ui.add(azimuth).on_hover_text("Clockwise from north");
         let [least, most] = SUN_HEIGHTS_DEG;
         let height = Slider::new(&mut sun.height_deg, least..=most).step_by(1.0).suffix("°").text("Height");
-        ui.add(height).on_hover_text("Over the horizon");
+        ui.add(height).on_hover_text("Above the horizon");
     });
 }
 
@@ -174,7 +174,7 @@ fn camera_menu(
         ui.separator();
         let has_motion = !snapshot.motions.is_empty();
         let tour = egui::Button::new("Tour run").selected(matches!(mount, Mount::Tour(_)));
-        let help = "Play, and go from vehicle to vehicle as they set out";
+        let help = "Play, and follow each vehicle as it departs";
         if ui.add_enabled(has_motion, tour).on_hover_text(help).clicked() {
             commands.send(Command::Terrain(TerrainCommand::View(ViewAction::Tour)));
             ui.close();

@@ -27,23 +27,23 @@ scenario Day[0,60] = { Drive() }",
 
 /// An option of a control program that is set twice.
 pub(crate) fn program_option(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("the option `{name}` is set before"))
+    Diagnostic::error(CODE, span, format!("the option `{name}` is already set"))
 }
 
 /// A second length of a step.
 pub(crate) fn step_length(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "the length of a step is set before").with_hint("remove one of the two")
+    Diagnostic::error(CODE, span, "the step length is already set").with_hint("remove one of the two")
 }
 
 /// A length of a step in a control block whose mission has the option `control_step`.
 pub fn step_of_mission(span: Span) -> Diagnostic {
-    let message = "the mission sets the length of a step before: `option control_step`";
+    let message = "the mission already sets the step length: `option control_step`";
     Diagnostic::error(CODE, span, message).with_hint("remove DEFSTEP or the option")
 }
 
 /// A mode to which one prior gives two probabilities.
 pub(crate) fn mode_of_prior(mode: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("the mode `{mode}` is named before in this prior"))
+    Diagnostic::error(CODE, span, format!("the mode `{mode}` is already in this prior"))
         .with_hint("give each mode one probability")
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn slope_of_flight(span: Span) -> Diagnostic {
 
 /// A model of a rover that is to fly.
 pub(crate) fn flying_rover(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "a model that extends one that drives cannot fly")
+    Diagnostic::error(CODE, span, "a model that flies cannot extend a model that drives")
         .with_hint("extend `Blimp`")
 }
 

@@ -59,7 +59,7 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// What is known about the name, the bound or the word at `offset`.
+/// Returns what is known about the name, the bound or the word at `offset`.
 pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hover> {
     if let Some(found) = hover_bound(parse, offset, evaluation) {
         return Some(found);
@@ -77,7 +77,7 @@ pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hove
     Some(Hover { span: token.span, topic: Topic::of_word(token.kind, token.text), markdown })
 }
 
-/// What the environment may do within the bounds whose word `token` is, and what is left to the executive.
+/// Returns what the environment may do within the bounds whose word `token` is, and what is left to the executive.
 fn contingent(
     parse: &Parse,
     root: SyntaxNode<'_>,
@@ -304,7 +304,7 @@ pub(super) fn header(root: SyntaxNode<'_>) -> Option<(String, String)> {
     Some((header.to_owned(), comments.join("\n")))
 }
 
-/// What a word of the language means.
+/// Returns what a word of the language means.
 fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
     Some(match token.kind {
         SyntaxKind::ChooseKeyword => "`choose { A, B }`: the planner selects exactly one alternative.",
@@ -339,7 +339,7 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
     })
 }
 
-/// What a word means that is one of the language only in its place.
+/// Returns what a word means that is one of the language only in its place.
 fn word_in_its_place(word: &str) -> Option<&'static str> {
     Some(match word {
         "const" => "`const NAME = e;`: a named number for bounds, arguments and `repeat`.",
@@ -429,7 +429,7 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         "slope" => "`slope 20 degrees`: the steepest slope that the vehicle drives; at most 60 degrees.",
         "clearance" => {
             "`clearance 0.3`: diameter of the largest rock that the vehicle passes over, in meters. For a model that flies, the \
-             least height over the ground."
+             minimum height above the ground."
         }
         "turning" => "`turning 0.5`: radius of the tightest turn at the maximum speed, in meters.",
         "mast" => "`mast 1.2`: height of the antenna over the ground, in meters, for `visible`.",

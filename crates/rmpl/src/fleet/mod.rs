@@ -80,7 +80,7 @@ fn declared<'world>(world: &'world World, name: &str) -> Option<&'world ModelDec
     world.models.iter().find(|model| model.name.text == name)
 }
 
-/// Whether a model is `wanted`, or extends it.
+/// Returns whether a model is `wanted`, or extends it.
 pub fn is_of(world: &World, model: &str, wanted: &str) -> bool {
     let lineage = lineage(world, model);
     let extends = |it: &&ModelDecl| {
@@ -112,7 +112,7 @@ pub fn properties<'models>(
 pub fn said_speed_mps(world: &World, model: &str) -> Option<Rational> {
     let lineage = lineage(world, model);
     let speeds = properties(&lineage).filter_map(|property| match property {
-        Property::Speed { greatest_mps, .. } => Some(greatest_mps),
+        Property::Speed { max_mps, .. } => Some(max_mps),
         _ => None,
     });
     speeds.last()
@@ -180,12 +180,12 @@ fn check_properties(world: &World, model: &ModelDecl, lineage: &[&ModelDecl], fo
 /// The steepest slope that a model can have, in radians.
 const MAX_SLOPE_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
-/// What no vehicle can be, if the property says it.
+/// Returns what no vehicle can be, if the property says it.
 fn problem(property: Property) -> Option<&'static str> {
     let is_wrong = match property {
         Property::Body { length_m, width_m } => length_m <= 0.0 || width_m <= 0.0,
-        Property::Speed { least_mps, greatest_mps } => {
-            least_mps.is_negative() || least_mps > greatest_mps || !greatest_mps.is_positive()
+        Property::Speed { min_mps, max_mps } => {
+            min_mps.is_negative() || min_mps > max_mps || !max_mps.is_positive()
         }
         Property::Slope { angle_rad } => angle_rad <= 0.0 || angle_rad > MAX_SLOPE_RAD + 1e-9,
         Property::Clearance { size_m } => size_m <= 0.0,

@@ -87,7 +87,7 @@ fn property(node: SyntaxNode<'_>) -> Option<PropertyDecl> {
     let second = quantities.next().and_then(quantity);
     let property = match word.text.as_str() {
         "body" => Property::Body { length_m: first.to_f64(), width_m: second?.to_f64() },
-        "speed" => Property::Speed { least_mps: first, greatest_mps: second? },
+        "speed" => Property::Speed { min_mps: first, max_mps: second? },
         "slope" => Property::Slope { angle_rad: angle_rad(node, first) },
         "clearance" => Property::Clearance { size_m: first.to_f64() },
         "turning" => Property::Turning { radius_m: first.to_f64() },
@@ -144,7 +144,7 @@ impl Lowering<'_> {
     }
 }
 
-/// What starts when it likes, as `free` says.
+/// Returns what starts when it likes, as `free` says.
 fn delayed(unit: Statement, word: Span) -> Statement {
     let delay = Statement { kind: StatementKind::Delay, bounds: None, span: word };
     let span = word.cover(unit.span);

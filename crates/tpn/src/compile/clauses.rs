@@ -68,7 +68,8 @@ impl Expander<'_> {
         }
     }
 
-    /// What the activity changes, each with where that is written: vehicles that it moves are at its last location then.
+    /// Returns what the activity changes, each with where that is written: vehicles that it moves are at its last
+    /// location then.
     fn effects(&mut self, activity: &Activity<'_>, called: Span) -> Vec<(Fact, Span)> {
         let mut effects: Vec<(Fact, Span)> = Vec::new();
         if let Some(moves) = &activity.declared.moves
@@ -122,8 +123,8 @@ impl Expander<'_> {
         for name in moved(moves, activity.scope) {
             let Some(vehicle) = world.vehicles.iter().find(|it| it.name.text == name) else { continue };
             let model = &vehicle.model.text;
-            if let Some(greatest_mps) = said_speed_mps(world, model).filter(|most| wanted_mps > *most) {
-                let [wanted, greatest] = [wanted_mps, greatest_mps].map(|speed| speed.to_f64().to_string());
+            if let Some(max_mps) = said_speed_mps(world, model).filter(|most| wanted_mps > *most) {
+                let [wanted, greatest] = [wanted_mps, max_mps].map(|speed| speed.to_f64().to_string());
                 self.diagnostics.push(model_wording::too_fast(&wanted, &name, model, &greatest, moves.span));
             }
         }

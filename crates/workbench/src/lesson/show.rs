@@ -110,7 +110,7 @@ impl StepKind {
         ("plan", Self::Plan),
     ];
 
-    /// Whether an event is of this kind.
+    /// Returns whether an event is of this kind.
     pub fn is(self, event: &Event) -> bool {
         match self {
             Self::Decision => matches!(event, Event::Decide { .. }),
@@ -182,7 +182,7 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         "near" => {
             show.near = value.split(',').map(panel).collect::<Result<_, _>>()?;
             if let Some(other) = show.near.iter().find(|panel| !panel.is_zoomable()) {
-                return Err(format!("the panel the panel `{}` cannot be zoomed", other.name()));
+                return Err(format!("the panel `{}` cannot be zoomed", other.name()));
             }
         }
         "time" => {

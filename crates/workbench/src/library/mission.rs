@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use review::Record;
 use review::record::RecordError;
+use review::{Record, strict};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use smol_str::SmolStr;
@@ -35,7 +35,7 @@ pub enum MissionKind {
 }
 
 impl MissionKind {
-    /// What lists say of it; nothing of what was started here.
+    /// Returns what lists say of it; nothing of what was started here.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Own => "",
@@ -144,7 +144,7 @@ pub const FORMAT: &str = "enroute-mission/1";
 /// What is before the checksum at the end of the JSON.
 const CHECKSUM: &str = ",\"checksum\":\"";
 
-/// Whether the checksum is that of what is before it, if there is one.
+/// Returns whether the checksum is that of what is before it, if there is one.
 fn fits_checksum(text: &str) -> bool {
     let Some((body, end)) = text.rsplit_once(CHECKSUM) else { return true };
     let checksum = end.strip_suffix("\"}").and_then(|digits| u64::from_str_radix(digits, 16).ok());
@@ -187,7 +187,7 @@ impl Mission {
         joined(&self.texts)
     }
 
-    /// Whether its texts are those of a joined one.
+    /// Returns whether its texts are those of a joined one.
     pub(crate) fn says(&self, text: &str) -> bool {
         let files = rmpl::files::split(text);
         files.len() == self.texts.len()
@@ -240,7 +240,7 @@ impl Mission {
         if !fits_checksum(text) {
             return Err(MissionError::Damaged("its checksum does not fit".to_owned()));
         }
-        let value: Value = serde_json::from_str(text).map_err(|error| {
+        let value = strict::from_str(text).map_err(|error| {
             // What begins like one and ends too early is a mission that was cut off.
             let begins = text.trim_start().starts_with('{') && text.contains("\"enroute-mission/");
             if begins { MissionError::Damaged(error.to_string()) } else { MissionError::NoMission }
@@ -260,7 +260,7 @@ impl Mission {
         Ok(mission)
     }
 
-    /// What its board said, if the file holds it, or why that cannot be used.
+    /// Returns what its board said, if the file holds it, or why that cannot be used.
     pub fn review_record(&self) -> Option<Result<Record, RecordError>> {
         self.review.as_ref().map(|review| Record::from_json(&review.to_string()))
     }

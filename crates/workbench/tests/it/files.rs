@@ -229,6 +229,32 @@ fn a_mission_goes_to_its_file_as_text_or_as_a_whole_where_the_host_can_write_fil
 }
 
 #[test]
+fn a_mission_file_whose_review_says_two_things_is_refused() {
+    let mut app = start_in(Rc::new(World::default()));
+    app.world.saves_in_place.set(true);
+    apply(&mut app, vec![Command::SetSource("scenario Day = { delay[1,2] }\n".to_owned())]);
+    apply(&mut app, vec![Command::SaveMission]);
+    let save = app.world.saved_in_place.borrow_mut().pop().expect("it is saved");
+    let forms = forms(&save);
+    let whole = forms[1].1.strip_suffix('}').expect("an object");
+    let mut open = |name: &str, text: String| {
+        app.world.news.borrow_mut().push_back(HostEvent::FileOpened {
+            kind: FileKind::Mission,
+            name: name.to_owned(),
+            bytes: text.into_bytes(),
+            token: None,
+        });
+        app.settle();
+        app.json()["toasts"].to_string()
+    };
+    let with = |review: &str| format!("{whole},\"review\":{review}}}");
+    let told = open("once.enroute", with("{\"entries\":[]}"));
+    assert!(!told.contains("damaged"), "{told}");
+    let told = open("twice.enroute", with("{\"entries\":[],\"entries\":[]}"));
+    assert!(told.contains("duplicate member `entries`"), "{told}");
+}
+
+#[test]
 fn a_mission_that_was_opened_from_a_file_keeps_it_and_no_other_mission_does() {
     let mut app = start_in(Rc::new(World::default()));
     app.world.saves_in_place.set(true);

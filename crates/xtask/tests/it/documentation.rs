@@ -68,7 +68,7 @@ fn public_name(line: &str, is_in_trait: bool) -> Option<String> {
     (!PLAIN.contains(&name)).then(|| name.to_owned())
 }
 
-/// What may have a comment in a source, without the tests at its end.
+/// Returns what may have a comment in a source, without the tests at its end.
 fn documented(text: &str) -> Vec<Documented> {
     let product = text.split("\n#[cfg(test)]\nmod tests {\n").next().unwrap_or_default();
     let mut found = Vec::new();
@@ -114,7 +114,7 @@ fn documented(text: &str) -> Vec<Documented> {
     found
 }
 
-/// Whether a doc comment only fills its line.
+/// Returns whether a doc comment only fills its line.
 fn is_filler(comment: &str) -> bool {
     let has_fact = comment.contains(|it: char| it.is_ascii_digit() || it == '`' || it == '∞');
     let has_unit = words(&comment.to_lowercase()).any(|word| UNITS.contains(&word));
@@ -174,6 +174,20 @@ fn no_comment_only_fills_its_line() {
     }
     assert!(count > 5000, "only {count} comments were found");
     assert!(filler.is_empty(), "comments that say no more than the name:\n{}", filler.join("\n"));
+}
+
+#[test]
+fn what_a_function_tells_is_what_it_returns() {
+    let mut bare = Vec::new();
+    for source in ["crates", "tests"].iter().flat_map(|folder| sources(&root().join(folder))) {
+        let items = documented(&read(&source)).into_iter();
+        for item in
+            items.filter(|item| item.comment.starts_with("Whether ") && item.line.ends_with("-> bool {"))
+        {
+            bare.push(format!("{}: {}: {}", source.display(), item.line, item.comment));
+        }
+    }
+    assert!(bare.is_empty(), "write \"Returns whether …\":\n{}", bare.join("\n"));
 }
 
 #[test]

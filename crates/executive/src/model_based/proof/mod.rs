@@ -104,7 +104,7 @@ impl Proving {
         Self { system: Arc::clone(system), properties, conditions, exploration, is_over: false }
     }
 
-    /// How many states have been found.
+    /// Returns how many states have been found.
     pub fn states(&self) -> usize {
         self.exploration.product.nodes.len()
     }
@@ -116,10 +116,10 @@ impl Proving {
         Ok(self.is_over)
     }
 
-    /// What the states that were explored say.
+    /// Returns what the states that were explored say.
     pub fn judge(mut self) -> Result<Proof, EstimateError> {
         if !self.is_over {
-            self.exploration.end_early("it was stopped".to_owned());
+            self.exploration.end_early("the proof was stopped".to_owned());
         }
         let Exploration { explorer, product, .. } = &mut self.exploration;
         let judge = Judge { system: &self.system, product, conditions: &self.conditions };
@@ -189,7 +189,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Where not all was explored: a run that does not come to its goal for very many steps.
+    /// Returns where not all was explored: a run that does not come to its goal for very many steps.
     fn long_run(
         &self,
         property: &Property,
@@ -245,7 +245,7 @@ impl Judge<'_> {
         unreached.filter_map(|id| Some(self.system.automaton.location(id)?.label.clone())).collect()
     }
 
-    /// What is waited for in some run, and true in none.
+    /// Returns what is waited for in some run, and true in none.
     fn unheard(&self) -> Vec<SmolStr> {
         let automaton = &self.system.automaton;
         let ids = (0..automaton.transitions.len()).map(|at| hca::TransitionId(at as u32));

@@ -147,16 +147,16 @@ pub fn draw(parse: &Parse, file: Span, change: &Change) -> Result<Drawn, String>
     drawn.made = drawn.made.or_else(|| made(parse, change, &drawn.edits));
     let changed = drawn.apply(parse.text());
     if changed == parse.text() {
-        return Err("It is there already".to_owned());
+        return Err("Already there".to_owned());
     }
     // A change that adds syntax errors is refused.
     if syntax_errors(&rmpl::parse(&changed)) > syntax_errors(parse) {
-        return Err("The text has no room for this there".to_owned());
+        return Err("This change would cause a syntax error".to_owned());
     }
     Ok(drawn)
 }
 
-/// Where what a change adds or moves begins in the new text.
+/// Returns where what a change adds or moves begins in the new text.
 fn made(parse: &Parse, change: &Change, edits: &[Edit]) -> Option<u32> {
     let text = match change {
         Change::Insert { text, .. } | Change::Paste { text, .. } => text.clone(),
@@ -188,7 +188,7 @@ pub fn statement_text(parse: &Parse, what: Span) -> Option<String> {
     Some(list::outdented(parse.text(), site.span()))
 }
 
-/// Whether a span represents a statement that can be changed as a whole.
+/// Returns whether a span represents a statement that can be changed as a whole.
 pub fn is_statement(parse: &Parse, what: Span) -> bool {
     Site::of(parse, what).is_ok()
 }
@@ -220,7 +220,7 @@ fn relocate(parse: &Parse, file: Span, what: Span, at: Place) -> Result<Vec<Edit
         let forwards = matches!(at, Place::Before(_));
         let is_next = site.neighbor(forwards).is_some_and(|next| next.span() == target.span());
         if is_next && matches!(at, Place::After(_) | Place::Before(_)) {
-            return Err("It is there already".to_owned());
+            return Err("Already there".to_owned());
         }
     }
     let text = list::outdented(parse.text(), site.span());
@@ -228,7 +228,7 @@ fn relocate(parse: &Parse, file: Span, what: Span, at: Place) -> Result<Vec<Edit
     for added in insert(parse, file, &text, at)? {
         let is_in_gap = |edit: &Edit| edit.span.start < added.span.start && added.span.start < edit.span.end;
         if edits.iter().any(is_in_gap) {
-            return Err("It is there already".to_owned());
+            return Err("Already there".to_owned());
         }
         edits.push(added);
     }

@@ -107,7 +107,7 @@ fn what_is_moved_takes_its_bounds_and_its_name_along() {
     assert_eq!(to(" A(), B() ", Place::After, "B()"), " { B(); A() } ");
     let parse = rmpl::parse("scenario S = { A(); B() }");
     let same = Change::Move { what: at(parse.text(), "B()"), at: Place::After(at(parse.text(), "A()")) };
-    assert_eq!(draw(&parse, only_file(&parse), &same), Err("It is there already".to_owned()));
+    assert_eq!(draw(&parse, only_file(&parse), &same), Err("Already there".to_owned()));
     let inside = Change::Move { what: at(parse.text(), "A()"), at: Place::After(at(parse.text(), "A()")) };
     assert!(draw(&parse, only_file(&parse), &inside).is_err());
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), true), Some(at(parse.text(), "B()")));

@@ -50,7 +50,7 @@ pub(super) fn wrap(parse: &Parse, site: &Site<'_>, wrapping: &Wrapping) -> Resul
         }
         Wrapping::Unordered => {
             let next = site.neighbor(true).filter(|_| matches!(site.holder, Holder::Row(_)));
-            let next = next.ok_or("Nothing follows that it could change places with")?;
+            let next = next.ok_or("No statement follows in the sequence")?;
             let span = Span::new(span.start, next.span().end);
             (span, braced("unordered ", &[outdented(source, span)], ""))
         }
@@ -66,7 +66,7 @@ pub(super) fn unwrap(parse: &Parse, site: &Site<'_>) -> Result<Vec<Edit>, String
     Ok(vec![edit])
 }
 
-/// What is left of a statement without its outermost construct.
+/// Returns what is left of a statement without its outermost construct.
 fn unwrapped(source: &str, statement: SyntaxNode<'_>) -> Option<Edit> {
     let node = core(statement)?;
     let only = |holder: SyntaxNode<'_>| {
@@ -140,7 +140,7 @@ fn statement_in(node: SyntaxNode<'_>) -> SyntaxNode<'_> {
     if node.kind() == SyntaxKind::Alternative { steps(node).next().unwrap_or(node) } else { node }
 }
 
-/// What a statement is, without its bounds and its name.
+/// Returns what a statement is, without its bounds and its name.
 fn core(node: SyntaxNode<'_>) -> Option<SyntaxNode<'_>> {
     statement_in(node).children().next()
 }

@@ -90,7 +90,9 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
         }
         Event::NoRoomForGap => "Failure: no time is left for a gap between adjacent intervals.".to_owned(),
         Event::Learn { choices } => learned(network, choices),
-        Event::Known { choices } => format!("Failure by a learned conflict: {}.", never(network, choices)),
+        Event::Known { choices } => {
+            format!("Failure, ruled out by a learned conflict: {}.", never(network, choices))
+        }
         Event::Threat { left, right } => {
             let why = reason_of_order(network, Ordering { first: *left, then: *right });
             let (left, right) = (owner(network, *left), owner(network, *right));
@@ -136,7 +138,7 @@ fn is_best_first(trace: &Trace) -> bool {
     matches!(trace.events.first().map(|entry| &entry.event), Some(Event::Begin(round)) if round.is_best_first)
 }
 
-/// What was learned, in a sentence.
+/// Returns what was learned, in a sentence.
 pub fn learned(network: &Network, choices: &[TreeChoice]) -> String {
     format!("Learned: {}.", never(network, choices))
 }
@@ -200,13 +202,13 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
     }
 }
 
-/// Which assertion supports a requirement; without one, that nothing does.
+/// Returns which assertion supports a requirement; without one, that nothing does.
 pub(super) fn gives(network: &Network, ask: LabelId, tell: Option<LabelId>) -> String {
     let giver = tell.map_or_else(|| "Nothing".to_owned(), |tell| giver(network, tell));
     format!("{giver} supports {} of {}", text(network, ask), owner(network, ask))
 }
 
-/// What a choice decides, whichever of its alternatives is taken.
+/// Returns what a choice decides, whichever of its alternatives is taken.
 pub(super) fn decided(network: &Network, choice: TreeChoice) -> String {
     match choice {
         TreeChoice::Decision { decision, .. } => Network::decision_name(decision),
@@ -297,7 +299,7 @@ fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNod
     }
 }
 
-/// Why two intervals must be ordered.
+/// Returns why two intervals must be ordered.
 fn reason_of_order(network: &Network, Ordering { first, then }: Ordering) -> String {
     let (one, other) = (&network.labels[first.index()], &network.labels[then.index()]);
     if one.mode == LabelMode::Tell && other.mode == LabelMode::Tell {
@@ -328,8 +330,8 @@ fn use_order(network: &Network, order: UseOrdering) -> String {
         return format!("Order {first} before {then}, so that {asked} holds.");
     }
     let why = match (first.change, then.change) {
-        (Change::Produces, Change::Consumes) => format!("{resource} is filled before it is drawn on"),
-        (Change::Consumes, Change::Produces) => format!("{resource} is drawn on before it is filled"),
+        (Change::Produces, Change::Consumes) => format!("{resource} is produced before it is consumed"),
+        (Change::Consumes, Change::Produces) => format!("{resource} is consumed before it is produced"),
         (Change::Consumes, _) => format!("both consume {resource}"),
         (Change::Produces, _) => format!("both produce {resource}"),
         (Change::Uses, _) => format!("both use {resource}"),
@@ -337,7 +339,7 @@ fn use_order(network: &Network, order: UseOrdering) -> String {
     format!("Order {} before {}: {why}.", user(network, order.first), user(network, order.then))
 }
 
-/// Who takes how much of a resource that has less.
+/// Returns who takes how much of a resource that has less.
 fn demand(network: &Network, uses: &[UseId]) -> String {
     let Some(&first) = uses.first() else { return "A resource is overused".to_owned() };
     let resource = &network.resources[network.uses[first.index()].resource.index()];
@@ -409,7 +411,7 @@ fn owner(network: &Network, label: LabelId) -> String {
     owner.map_or_else(|| network.label_name(label), |owner| owner.name.to_string())
 }
 
-/// What gives a condition.
+/// Returns what gives a condition.
 fn giver(network: &Network, label: LabelId) -> String {
     if network.labels[label.index()].extent == Extent::Initial {
         "the start of the mission".to_owned()
