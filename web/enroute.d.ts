@@ -771,7 +771,7 @@ export type Asked = {
   isKnown: boolean;
 };
 
-/** What a call refuses with. */
+/** The error that a call throws. */
 export interface EnrouteError extends Error {
   readonly name: "EnrouteError";
   readonly code: RefusalCode;
@@ -808,7 +808,7 @@ export interface Enroute {
   dispatch(command: string, args?: object): void;
   /** The state as plain data. */
   state(): State;
-  /** Calls back with the state whenever it has changed, after the frame that shows it; the answer ends that. */
+  /** Calls back with the state whenever it has changed, after the frame that shows it. Call the returned function to unsubscribe. */
   subscribe(callback: (state: State) => void): () => void;
   /** The widgets of a role whose name or text contains `label`. */
   widgets(role: string, label?: string): Widget[];

@@ -12,7 +12,7 @@ use review::{
 use crate::Document;
 use crate::figure;
 use crate::html::readable_time;
-use crate::shown::shown;
+use crate::shown::{sentence, shown};
 use crate::tables::{status, table, word};
 
 /// The word for how a plan stands, with its sign and in its color.
@@ -105,7 +105,7 @@ pub(crate) fn waivers(record: &Record) -> String {
         };
         vec![
             word(look, waiver.state.name()),
-            shown(&waiver.line.text),
+            sentence(&waiver.line.text),
             lines_of(waiver.entry.act.text()),
             who(waiver.entry),
             shown(waiver.until),
@@ -158,7 +158,7 @@ fn plan(since: &Since) -> String {
         Some(plan) if plan.is_same() => String::new(),
         Some(plan) => {
             let rows =
-                plan.differences.iter().map(|it| vec![shown(it.subject.name()), shown(&it.sentence())]);
+                plan.differences.iter().map(|it| vec![shown(it.subject.name()), sentence(&it.sentence())]);
             format!("{heading}<p>{}</p>\n{}", shown(&plan.summary()), table(&["", "What"], rows))
         }
     }
@@ -184,7 +184,7 @@ fn text(changes: &[TextChange]) -> String {
 
 fn line(change: &LineChange) -> Vec<String> {
     let section = change.section().map(review::Section::title).unwrap_or_default();
-    vec![section.to_owned(), shown(&change.sentence())]
+    vec![section.to_owned(), sentence(&change.sentence())]
 }
 
 fn rate(rate: Option<Rate>) -> String {
@@ -247,7 +247,7 @@ fn words(entry: &Entry) -> String {
     match &entry.act {
         Act::Comment { about: Some(about), .. } => format!("<i>{}</i><br>{text}", shown(about)),
         Act::Acknowledge { line, .. } | Act::Waive { line, .. } => {
-            format!("<i>{}</i><br>{text}", shown(&line.text))
+            format!("<i>{}</i><br>{text}", sentence(&line.text))
         }
         _ => text,
     }

@@ -13,9 +13,36 @@ pub(crate) fn shown(text: &str) -> String {
     escaped(&seen)
 }
 
+/// A sentence for HTML: what is between two backticks is code.
+pub(crate) fn sentence(text: &str) -> String {
+    let shown = shown(text);
+    let parts: Vec<&str> = shown.split('`').collect();
+    // A backtick without a second one is as it is written.
+    if parts.len().is_multiple_of(2) {
+        return shown;
+    }
+    let part = |(at, part): (usize, &&str)| match at % 2 {
+        0 => (*part).to_owned(),
+        _ => format!("<code>{part}</code>"),
+    };
+    parts.iter().enumerate().map(part).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn code_in_a_sentence_is_marked() {
+        for (text, html) in [
+            ("the bounds of `Drive`", "the bounds of <code>Drive</code>"),
+            ("`a < b` and `c`", "<code>a &lt; b</code> and <code>c</code>"),
+            ("one ` alone", "one ` alone"),
+            ("none", "none"),
+        ] {
+            assert_eq!(sentence(text), html);
+        }
+    }
 
     #[test]
     fn marks_of_direction_are_shown_and_letters_of_any_script_are_as_they_are() {

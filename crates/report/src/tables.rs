@@ -7,7 +7,7 @@ use snapshot::Robustness;
 use tpn::{Levels, Supply};
 
 use crate::board;
-use crate::shown::shown;
+use crate::shown::{sentence, shown};
 
 /// All sections, each with its heading; one without lines says so.
 pub(crate) fn sections(review: &Review) -> String {
@@ -58,7 +58,7 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
             vec![
                 status(line.status),
                 section.title().to_owned(),
-                shown(&line.text),
+                sentence(&line.text),
                 criterion(line),
                 board::acknowledgment(acknowledged, &LineKey::new(section, line)),
                 place(line),
@@ -217,13 +217,15 @@ fn time(time: Bound) -> String {
 fn lines(lines: &[&Line]) -> String {
     table(
         &["", "Finding", "Criterion", "Where"],
-        lines.iter().map(|line| vec![status(line.status), shown(&line.text), criterion(line), place(line)]),
+        lines
+            .iter()
+            .map(|line| vec![status(line.status), sentence(&line.text), criterion(line), place(line)]),
     )
 }
 
 /// Returns what a line is held against.
 fn criterion(line: &Line) -> String {
-    let criterion = line.criterion.as_deref().map(shown);
+    let criterion = line.criterion.as_deref().map(sentence);
     criterion.map(|it| format!("<div class=\"criterion\">{it}</div>")).unwrap_or_default()
 }
 
@@ -242,7 +244,7 @@ fn choices(review: &Review) -> String {
                 if is_first { status(choice.line.status) } else { String::new() },
                 if is_first { shown(&choice.name) } else { String::new() },
                 alternative_cell(alternative),
-                shown(&alternative.fate.sentence()),
+                sentence(&alternative.fate.sentence()),
                 if is_first { place(&choice.line) } else { String::new() },
             ]
         })

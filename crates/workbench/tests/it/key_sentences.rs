@@ -179,6 +179,11 @@ impl Told<'_> {
                     holds(choices.iter().all(|it| chosen.contains(it)), "it is about other choices")?;
                     holds(!choices.is_empty() && self.excludes(choices), "there is a plan with these choices")
                 }
+                Event::Clash { choices } => {
+                    let chosen: Vec<TreeChoice> = line.iter().filter_map(|&it| self.choice_of(it)).collect();
+                    holds(choices.iter().all(|it| chosen.contains(it)), "it is about other choices")?;
+                    holds(!choices.is_empty() && self.excludes(choices), "there is a plan with these choices")
+                }
                 Event::Backtrack { to } => {
                     holds(line.contains(to), "it goes to a state that did not lead here")
                 }
