@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Button, Frame, Margin, RichText, Ui};
+use egui::{Button, Frame, Margin, RichText, TextStyle, Ui};
 use review::record::{Act, Entry, short};
 use review::{Check, Signature};
 use theme::icon::{self, Icon};
@@ -13,7 +13,7 @@ use workbench::state::review::ReviewCommand;
 use super::people::{indented, who};
 use super::verdict::moment;
 use super::{header, row};
-use crate::Context;
+use crate::{Context, inline_code};
 
 /// The last entries are all listed, and earlier ones if they do not count; a file has all.
 const MAX_ENTRIES: usize = 60;
@@ -133,7 +133,8 @@ fn show_entry(
             act => act.text().to_owned(),
         };
         if !words.is_empty() {
-            ui.label(RichText::new(words).color(tokens.text_muted));
+            let font = TextStyle::Body.resolve(ui.style());
+            ui.label(inline_code::job(&words, &font, tokens.text_muted, ui.available_width()));
         }
     });
 }

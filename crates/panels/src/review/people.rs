@@ -229,7 +229,9 @@ impl People {
                     ui.horizontal_wrapped(|ui| {
                         icon::label(ui, sign, color);
                         ui.label(strong(format!("{}, {}", waiver.state.name(), waiver.until)).color(color));
-                        ui.label(super::capital::sentence(&waiver.line.text));
+                        let font = egui::TextStyle::Body.resolve(ui.style());
+                        let line = super::capital::sentence(&waiver.line.text);
+                        ui.label(crate::inline_code::job(&line, &font, tokens.text, ui.available_width()));
                     });
                     let words = format!("{}: {}", who(waiver.entry), waiver.entry.act.text());
                     ui.label(RichText::new(words).small().color(tokens.text_muted));

@@ -170,13 +170,15 @@ fn a_forged_history_is_marked_and_counts_for_nothing() -> Result<()> {
     other.wait_for("state.review.people.length === 2 && state.review.history[0].counts")?;
     other.wait_for("state.review.planStatus === 'in-review'")?;
     // The panel shows it, not only the state.
-    other.tab.resize(1280, 1600)?;
     dispatch(&other, "view.panel", &json!({ "name": "review" }))?;
+    for delta in [2000.0, 2000.0, 2000.0, 2000.0, -350.0] {
+        other.tab.wheel(100.0, 300.0, delta)?;
+        other.tab.next_frame()?;
+    }
     other.tab.wait_until(
         "[...document.querySelectorAll('[id^=widget-]')].some((it) => it.textContent.includes('broken'))",
     )?;
     other.keep_picture("forged-history")?;
-    other.tab.resize(800, 500)?;
     // What was signed by no one else's hand completes the board.
     other.tab.drop_file("board.review.json", review.as_bytes())?;
     other.wait_for("state.review.planStatus === 'approved'")?;
