@@ -155,16 +155,8 @@ impl Opened {
         self.tab.next_frame()?;
         let Some(folder) = env::var_os("ENROUTE_RECORDING").map(PathBuf::from) else { return Ok(()) };
         fs::create_dir_all(&folder)?;
-        let metrics = |ratio: f64| {
-            let size = "({ width: innerWidth, height: innerHeight, mobile: false })";
-            let mut metrics = self.tab.evaluate(size)?;
-            metrics["deviceScaleFactor"] = json!(ratio);
-            self.tab.call("Emulation.setDeviceMetricsOverride", &metrics)?;
-            self.tab.next_frame()
-        };
-        metrics(1.0)?;
         fs::write(folder.join(format!("{name}.png")), self.tab.screenshot_png()?)?;
-        metrics(PIXEL_RATIO)
+        Ok(())
     }
 
     /// The page as pixels, once what was done is drawn.
