@@ -343,7 +343,7 @@ impl Standing<'_> {
             self.conflicting_rules.iter().map(|entry| names::one_line(&entry.by)).collect();
         let conflicting = (!names.is_empty()).then(|| {
             format!(
-                "{} set different flight rules without knowing of each other: set them again",
+                "{} set different flight rules without knowing of each other: start a new history in a copy of the mission",
                 names.join(" and ")
             )
         });

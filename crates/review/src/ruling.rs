@@ -3,7 +3,7 @@
 //! Every trusted person sets flight rules. Rules that weaken the board take effect once people who could complete the
 //! board in force have signed the same rules: otherwise one person could set a board that this person alone completes.
 //! If two people set rules without knowing of each other, the stricter board is in force; if neither is stricter, nothing is
-//! approved until someone sets rules that follow both.
+//! approved in this history any more.
 
 use std::collections::BTreeSet;
 
@@ -13,9 +13,6 @@ use super::keys::PublicKey;
 use super::record::{Act, Entry, Record};
 use super::seat;
 
-/// Rules in force beside each other, at most.
-const MAX_CONFLICTING: usize = 8;
-
 /// Which entries set the flight rules in force, by their indices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ruling {
@@ -23,8 +20,8 @@ pub(super) struct Ruling {
     set_by: Vec<usize>,
     /// Those that set the board in force, and perhaps other flight rules with it.
     board_by: Vec<usize>,
-    /// Entries that set the rules in force and others beside them: the signer of each did not know the others, and none of
-    /// the boards is at least as strict as all others.
+    /// The first two entries that set rules without knowing of each other, where neither board is at least as strict as the
+    /// other. No later entry ends that: an entry that comes before others, by its date, could undo what they agreed to.
     conflicting: Vec<usize>,
     /// Which entries follow the last change of the rules; `None` if they have never changed.
     under: Option<Vec<bool>>,
@@ -86,34 +83,31 @@ impl Ruling {
     pub(super) fn new(entries: &[Entry], checks: &[Check]) -> Self {
         let usual = FlightRules::default();
         let mut ruling = Self::default();
-        let mut in_force = vec![InForce {
+        let mut in_force = InForce {
             rules: &usual,
             digest: usual.digest(),
             set_by: Vec::new(),
             board_by: Vec::new(),
             followers: None,
-        }];
-        ruling.ever_in_force.insert(usual.digest());
+        };
         for (index, (entry, check)) in entries.iter().zip(checks).enumerate() {
-            for before in &mut in_force {
-                if before.is_known_to(entry) {
-                    before.followers.as_mut().map(|followers| followers.insert(entry.digest()));
-                }
+            if in_force.is_known_to(entry)
+                && let Some(followers) = &mut in_force.followers
+            {
+                followers.insert(entry.digest());
             }
             let Act::Rules { rules } = &entry.act else { continue };
             if check.counts() {
                 ruling.add(entries, (index, rules), &mut in_force);
             }
         }
-        let is_under = |entry: &Entry| in_force.iter().all(|it| it.is_known_to(entry));
-        if in_force.iter().any(|it| it.followers.is_some()) {
-            ruling.under = Some(entries.iter().map(is_under).collect());
+        if in_force.followers.is_some() {
+            ruling.under = Some(entries.iter().map(|entry| in_force.is_known_to(entry)).collect());
+        } else {
+            // Otherwise, anyone could approve by the usual rules what the board has not seen.
+            ruling.ever_in_force.insert(in_force.digest);
         }
-        if in_force.len() > 1 {
-            ruling.conflicting = in_force.iter().filter_map(|it| it.set_by.last().copied()).collect();
-        }
-        let first = in_force.swap_remove(0);
-        (ruling.set_by, ruling.board_by) = (first.set_by, first.board_by);
+        (ruling.set_by, ruling.board_by) = (in_force.set_by, in_force.board_by);
         ruling
     }
 
@@ -122,67 +116,55 @@ impl Ruling {
         &mut self,
         entries: &'a [Entry],
         (index, rules): (usize, &'a FlightRules),
-        in_force: &mut Vec<InForce<'a>>,
+        in_force: &mut InForce<'a>,
     ) {
         let entry = &entries[index];
-        if let [only] = in_force.as_mut_slice()
-            && only.rules == rules
-        {
+        if in_force.rules == rules {
             // No change: approvals before it are of the same rules.
-            if only.set_by.is_empty() {
-                (only.set_by, only.board_by) = (vec![index], vec![index]);
+            if in_force.set_by.is_empty() {
+                (in_force.set_by, in_force.board_by) = (vec![index], vec![index]);
             }
             return;
         }
-        let effects: Vec<Effect> = in_force.iter().map(|before| effect(entry, rules, before)).collect();
-        let is_any = |is: fn(&Effect) -> bool| effects.iter().any(is);
         let mut signed = vec![index];
-        if is_any(|it| matches!(it, Effect::Nothing)) {
-            self.without_effect.insert(index);
-            return;
-        }
-        if is_any(|it| matches!(it, Effect::Weakens)) {
-            // Who agreed to leave other rules than these did not agree to leave these.
-            let knows_all = in_force.iter().all(|before| before.is_known_to(entry));
-            if !in_force[0].set_by.is_empty() && (entry.rules != in_force[0].digest || !knows_all) {
+        match effect(entry, rules, in_force) {
+            Effect::Replaces => {}
+            Effect::Nothing => {
                 self.without_effect.insert(index);
                 return;
             }
-            let same = |indices: &Vec<usize>| rules_of(entries, indices) == Some(rules);
-            if let Some(known) = self.proposed.iter().position(same) {
-                signed = self.proposed.remove(known);
-                signed.push(index);
-            }
-            let agrees = |before: &InForce<'_>| {
-                let board = &before.rules.board;
-                seat::filled(board, &keys_of(entries, &signed)) >= seat::wanted(board)
-            };
-            let mut weakened = in_force.iter().zip(&effects).filter(|(_, it)| matches!(it, Effect::Weakens));
-            if !weakened.all(|(before, _)| agrees(before)) {
+            Effect::Conflicts => {
                 self.without_effect.insert(index);
-                self.proposed.push(signed);
+                if self.conflicting.is_empty() {
+                    self.conflicting = in_force.set_by.last().copied().into_iter().chain([index]).collect();
+                }
                 return;
             }
-        }
-        let mut effects = effects.into_iter();
-        let mut replaced: Vec<InForce<'a>> =
-            in_force.extract_if(.., |_| !matches!(effects.next(), Some(Effect::Conflicts))).collect();
-        if in_force.len() >= MAX_CONFLICTING {
-            // The board has to agree on rules in any case.
-            self.without_effect.insert(index);
-            in_force.append(&mut replaced);
-            return;
+            Effect::Weakens => {
+                // Who agreed to leave other rules than these did not agree to leave these.
+                if !in_force.set_by.is_empty() && entry.rules != in_force.digest {
+                    self.without_effect.insert(index);
+                    return;
+                }
+                let same = |indices: &Vec<usize>| rules_of(entries, indices) == Some(rules);
+                if let Some(known) = self.proposed.iter().position(same) {
+                    signed = self.proposed.remove(known);
+                    signed.push(index);
+                }
+                let board = &in_force.rules.board;
+                if seat::filled(board, &keys_of(entries, &signed)) < seat::wanted(board) {
+                    self.without_effect.insert(index);
+                    self.proposed.push(signed);
+                    return;
+                }
+            }
         }
         self.without_effect.retain(|index| !signed.contains(index));
-        let board_by = match replaced.as_slice() {
-            [before] if before.rules.board == rules.board && !before.board_by.is_empty() => {
-                before.board_by.clone()
-            }
-            _ => signed.clone(),
-        };
+        let keeps_board = in_force.rules.board == rules.board && !in_force.board_by.is_empty();
+        let board_by = if keeps_board { in_force.board_by.clone() } else { signed.clone() };
         let (digest, followers) = (rules.digest(), Some(BTreeSet::from([entry.digest()])));
         self.ever_in_force.insert(digest.clone());
-        in_force.push(InForce { rules, digest, set_by: signed, board_by, followers });
+        *in_force = InForce { rules, digest, set_by: signed, board_by, followers };
         self.proposed.clear();
     }
 
@@ -257,8 +239,8 @@ impl Record {
         self.at(&self.ruling().board_by)
     }
 
-    /// Returns the entries that set different flight rules without knowing of each other, where none of their boards is at
-    /// least as strict as the others: until someone sets rules that follow all of them, nothing is approved.
+    /// Returns the first two entries that set different flight rules without knowing of each other, where neither board is at
+    /// least as strict as the other: nothing is approved in this history any more.
     pub fn conflicting_rules(&self) -> Vec<&Entry> {
         self.at(&self.ruling().conflicting)
     }

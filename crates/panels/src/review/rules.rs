@@ -57,8 +57,7 @@ impl Rules {
             ui.add_space(space::S);
             let problem = rules.problem();
             ui.horizontal_wrapped(|ui| {
-                let is_new = rules != present || !record.conflicting_rules().is_empty();
-                let is_ready = is_new && problem.is_none();
+                let is_ready = rules != present && problem.is_none();
                 if ui.add_enabled(is_ready, Button::new("Apply rules")).clicked() {
                     let rules = Box::new(rules.clone());
                     commands.send(Command::Review(ReviewCommand::SetRules(rules)));

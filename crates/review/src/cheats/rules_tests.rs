@@ -166,18 +166,51 @@ fn rules_that_are_dated_back_do_not_take_a_board() {
             assert!(!board.status_under(&of(of_ada())).is_approved(), "{by}");
             assert!(!board.status_under(&of(Seat::new("Reviewer", 2))).is_approved(), "{by}");
         }
-        // The board of two is in force again once Ada has agreed to leave her own.
-        board.say("Chair", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
-        assert_eq!(board.record.conflicting_rules().len(), 2);
-        board.say("Ada", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
-        assert!(board.record.conflicting_rules().is_empty());
-        assert_eq!(board.record.rules(), &of(Seat::new("Reviewer", 2)));
-        board.review.judge(&of(Seat::new("Reviewer", 2)), None);
-        for (by, is_last) in [("Ada", false), ("Grace", true)] {
-            board.approve(by);
-            assert_eq!(board.status().is_approved(), is_last, "{by}");
+        // What one person sets after that ends nothing, and neither do all together.
+        for (by, rules) in [
+            ("Ada", of(Seat::new("Reviewer", 1))),
+            ("Ada", of(of_ada())),
+            ("Chair", of(Seat::new("Reviewer", 2))),
+            ("Grace", of(Seat::new("Reviewer", 2))),
+            ("Ada", of(Seat::new("Reviewer", 2))),
+        ] {
+            board.say(by, Act::Rules { rules });
+            let rules = board.record.rules().clone();
+            board.review.judge(&rules, None);
+            for by in ["Ada", "Grace", "Chair"] {
+                board.approve(by);
+            }
+            assert!(!board.status().is_approved(), "{by}");
         }
     }
+}
+
+/// Many entries that conflict are no way around that.
+#[test]
+fn many_backdated_rules_do_not_take_a_board() {
+    let of = |seat: Seat| FlightRules { board: vec![seat], ..FlightRules::default() };
+    let of_ada = |role: &str| Seat { people: vec![key("Ada").public()], ..Seat::new(role, 1) };
+    let mut board = Board::new(LASTING);
+    board.record = judged(Record::new("enroute"));
+    board.record.seed([7; 32]);
+    board.say("Grace", Act::Comment { about: None, to: None, text: "Long.".to_owned() });
+    let former: Vec<String> = board.record.heads().map(str::to_owned).collect();
+    let comment = former[0].clone();
+    let early: Vec<Said> = (0..9).map(|_| board.said("Ada")).collect();
+    board.say("Grace", Act::Resolve { of: comment, text: "It is meant so.".to_owned() });
+    board.say("Chair", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
+    let usual = FlightRules::default().digest();
+    for (number, early) in early.into_iter().enumerate() {
+        let act = Act::Rules { rules: of(of_ada(&format!("Role {number}"))) };
+        let said = Said { former: former.clone(), rules: usual.clone(), act, ..early };
+        board.record = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+    }
+    board.say("Ada", Act::Rules { rules: of(of_ada("Reviewer")) });
+    let rules = board.record.rules().clone();
+    board.review.judge(&rules, None);
+    board.approve("Ada");
+    assert!(!board.status().is_approved());
+    assert!(!board.status_under(&of(of_ada("Reviewer"))).is_approved());
 }
 
 #[test]

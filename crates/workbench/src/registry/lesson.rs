@@ -12,8 +12,7 @@ use crate::registry::{by_id, from_json};
 use crate::state::AppState;
 
 /// Groups of commands that lessons may run, and single commands.
-const ALLOWED: [&str; 13] = [
-    "draw.",
+const ALLOWED: [&str; 12] = [
     "execute.",
     "go.",
     "plan.",
@@ -28,8 +27,17 @@ const ALLOWED: [&str; 13] = [
     "view.workspace",
 ];
 
-/// Those of these groups that write files.
-const REFUSED: [&str; 2] = ["execute.save", "terrain.video"];
+/// Those of these groups that open or save files, or change the text at the next click.
+const REFUSED: [&str; 8] = [
+    "execute.save",
+    "execute.replay",
+    "terrain.video",
+    "terrain.location",
+    "terrain.circle",
+    "terrain.polygon",
+    "terrain.wall",
+    "terrain.vehicle",
+];
 
 fn is_allowed(id: &str) -> bool {
     let is_named = |name: &&str| if name.ends_with('.') { id.starts_with(*name) } else { id == *name };
@@ -78,6 +86,9 @@ mod tests {
             ("file.save", false),
             ("export.csv", false),
             ("edit.setSource", false),
+            ("draw.add", false),
+            ("execute.replay", false),
+            ("terrain.wall", false),
             ("execute.save", false),
             ("view.saveLayout", false),
         ] {

@@ -342,7 +342,7 @@ impl Reviewing<'_> {
             self.window.failed(format!("Invalid flight rules: {problem}"));
             return;
         }
-        if self.review.record.rules() == rules && self.review.record.conflicting_rules().is_empty() {
+        if self.review.record.rules() == rules {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
