@@ -12,7 +12,8 @@ use crate::registry::{by_id, from_json};
 use crate::state::AppState;
 
 /// Groups of commands that lessons may run, and single commands.
-const ALLOWED: [&str; 12] = [
+const ALLOWED: [&str; 13] = [
+    "draw.",
     "execute.",
     "go.",
     "plan.",
@@ -86,7 +87,6 @@ mod tests {
             ("file.save", false),
             ("export.csv", false),
             ("edit.setSource", false),
-            ("draw.add", false),
             ("execute.replay", false),
             ("terrain.wall", false),
             ("execute.save", false),
