@@ -269,16 +269,9 @@ fn lapsed<'a>(
     accepted: &Accepted<'_>,
     present: &Present<'_>,
 ) -> Option<(&'a Entry, &'static str)> {
-    approvals.iter().rev().find_map(|(last, subject)| {
-        let difference = present.difference_by(record, accepted, last, subject)?;
-        let same = approvals.iter().filter(|(entry, other)| {
-            entry.content_hash == last.content_hash
-                && entry.plan_hash == last.plan_hash
-                && other.rules == subject.rules
-        });
-        let same: Vec<&Entry> = same.map(|(entry, _)| *entry).collect();
-        is_complete(&seats(&subject.rules.board, &same)).then_some((*last, difference))
-    })
+    completed(approvals)
+        .rev()
+        .find_map(|(entry, subject)| Some((entry, present.difference_by(record, accepted, entry, subject)?)))
 }
 
 /// The approvals of boards that are complete, oldest first.
