@@ -8,6 +8,7 @@ mod input;
 mod number;
 mod opened;
 mod output;
+mod repeated;
 mod save;
 mod target;
 mod trust;

@@ -148,7 +148,7 @@ pub struct Standing<'a> {
     pub lapsed: Option<(&'a Entry, &'static str)>,
     /// Entries that set different flight rules: see [`Record::conflicting_rules`].
     pub conflicting_rules: Vec<&'a Entry>,
-    /// The last entry that sets flight rules, if unknown keys signed all such entries.
+    /// The last entry that sets flight rules with an unknown key: see [`Record::unknown_rules`].
     pub unknown_rules: Option<&'a Entry>,
     /// Comments that are not resolved, oldest first.
     pub open_comments: Vec<&'a Entry>,
@@ -269,18 +269,20 @@ fn lapsed<'a>(
     accepted: &Accepted<'_>,
     present: &Present<'_>,
 ) -> Option<(&'a Entry, &'static str)> {
-    completed(approvals)
+    completed(record, approvals)
         .rev()
         .find_map(|(entry, subject)| Some((entry, present.difference_by(record, accepted, entry, subject)?)))
 }
 
-/// The approvals of boards that are complete, oldest first.
+/// The approvals that completed a board that was in force, oldest first.
 fn completed<'a>(
+    record: &Record,
     approvals: &[(&'a Entry, &'a Subject)],
 ) -> impl DoubleEndedIterator<Item = (&'a Entry, &'a Subject)> {
     let key = |entry: &'a Entry| (&entry.content_hash, &entry.plan_hash, &entry.rules);
     let mut same: BTreeMap<_, (Vec<&'a Entry>, &'a Subject)> = BTreeMap::new();
-    for &(entry, subject) in approvals {
+    let was_in_force = |entry: &Entry| record.ruling().was_in_force(&entry.rules);
+    for &(entry, subject) in approvals.iter().filter(|(entry, _)| was_in_force(entry)) {
         same.entry(key(entry)).or_insert_with(|| (Vec::new(), subject)).0.push(entry);
     }
     same.retain(|_, (entries, subject)| is_complete(&seats(&subject.rules.board, entries)));
@@ -319,9 +321,7 @@ impl Record {
     pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
         let approvals: Vec<(&Entry, &Subject)> =
             self.standing_entries().filter_map(|entry| Some((entry, self.subject(entry)?))).collect();
-        let mut completed =
-            completed(&approvals).filter(|(entry, _)| self.ruling().was_in_force(&entry.rules));
-        completed.next_back().or_else(|| approvals.last().copied())
+        completed(self, &approvals).next_back().or_else(|| approvals.last().copied())
     }
 }
 
@@ -332,24 +332,25 @@ impl Standing<'_> {
             (count > 0).then(|| format!("{count} {}", if count == 1 { one } else { many }))
         };
         let missing = self.missing.map(str::to_owned);
-        let names: Vec<String> =
+        let names: BTreeSet<String> =
             self.conflicting_rules.iter().map(|entry| names::one_line(&entry.by)).collect();
         let conflicting = (!names.is_empty()).then(|| {
-            format!(
-                "{} set different flight rules without knowing of each other: start a new history in a copy of the mission",
-                names.join(" and ")
-            )
+            let names = names.into_iter().collect::<Vec<_>>().join(" and ");
+            format!("different flight rules are in force, set by {names}: their boards must agree to the same rules")
         });
         let unknown = self.unknown_rules.map(|entry| {
-            format!("the flight rules are set by {}, whose key is unknown", names::one_line(&entry.by))
+            let name = names::one_line(&entry.by);
+            format!("{name}, whose key is unknown, has set flight rules: trust the key, or confirm the rules in force")
         });
+        let needing_waivers = self.unacknowledged.iter().filter(|(_, line)| line.needs_waiver).count();
         missing
             .into_iter()
             .chain(conflicting)
             .chain(unknown)
             .chain(some(self.failed, "item has failed", "items have failed"))
+            .chain(some(needing_waivers, "item needs a waiver", "items need waivers"))
             .chain(some(
-                self.unacknowledged.len(),
+                self.unacknowledged.len() - needing_waivers,
                 "item that needs attention is not acknowledged",
                 "items that need attention are not acknowledged",
             ))

@@ -164,6 +164,8 @@ pub enum Objection {
     NoDate,
     /// Its date has come when it is signed.
     PastDate,
+    /// A flight rule that the plan violates is waived, and not acknowledged.
+    NeedsWaiver,
     /// Only the person who signed an entry withdraws it.
     NotSigner,
     /// Only comments, acknowledgments, waivers and approvals are withdrawn.
@@ -181,6 +183,7 @@ impl Objection {
             (Self::NoReason, _) => "an acknowledgment needs a reason",
             (Self::NoDate, _) => "a waiver needs a date",
             (Self::PastDate, _) => "a waiver must lapse after the day on which it is signed (UTC)",
+            (Self::NeedsWaiver, _) => "a flight rule that the plan violates needs a waiver",
             (Self::NotSigner, _) => "only the person who signed an entry can withdraw it",
             (Self::Permanent, _) => "only comments, acknowledgments, waivers and approvals can be withdrawn",
             (Self::NotConcerned, _) => {
@@ -210,6 +213,7 @@ pub fn objection(
         Act::Resolve { .. } | Act::Acknowledge { .. } | Act::Waive { .. } if is_silent() => {
             Some(Objection::NoReason)
         }
+        Act::Acknowledge { line, .. } if line.needs_waiver => Some(Objection::NeedsWaiver),
         Act::Waive { until, .. } => match day(until) {
             None => Some(Objection::NoDate),
             Some(until) if !can_lapse(signed, until) => Some(Objection::PastDate),

@@ -104,6 +104,9 @@ pub struct Line {
     /// Where in the network it is, with what is before and after it: another place is another line, even with the same
     /// words. Empty for a line that is about no place.
     pub place: String,
+    /// Whether it can only be accepted until a date: it is about a flight rule that the plan violates, and that may be waived.
+    #[serde(default)]
+    pub needs_waiver: bool,
 }
 
 impl Line {
@@ -119,6 +122,7 @@ impl Line {
             names: Vec::new(),
             nodes: Vec::new(),
             place: String::new(),
+            needs_waiver: false,
         }
     }
 }

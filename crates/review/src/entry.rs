@@ -217,13 +217,16 @@ pub struct LineKey {
     /// Where in the network it is, with what is before and after it: see [`Line::place`].
     #[serde(default)]
     pub place: String,
+    /// Whether it can only be waived: see [`Line::needs_waiver`].
+    #[serde(default)]
+    pub needs_waiver: bool,
 }
 
 impl LineKey {
     /// The key of a line.
     pub fn new(section: Section, line: &Line) -> Self {
-        let Line { text, criterion, place, .. } = line.clone();
-        Self { section, text, criterion, place }
+        let Line { text, criterion, place, needs_waiver, .. } = line.clone();
+        Self { section, text, criterion, place, needs_waiver }
     }
 }
 

@@ -64,6 +64,8 @@ impl MissionRule {
             None => (Status::Failed, format!("{name}: has not been evaluated yet")),
         };
         let mut line = Line::new(status, text);
+        let is_broken = matches!(found.map(|it| &it.outcome), Some(Outcome::Broken(_)));
+        line.needs_waiver = self.waivable && is_broken;
         if let Some(Finding { names, nodes, .. }) = found {
             (line.names, line.nodes) = (names.clone(), nodes.clone());
         }
@@ -103,7 +105,7 @@ impl Review {
         }
         for choice in &mut self.choices {
             choice.line.criterion =
-                Some("every other alternative was checked, with the previous choices unchanged".to_owned());
+                Some("Enroute checked every other alternative with the earlier choices unchanged".to_owned());
         }
         for line in &mut self.separation_violations {
             line.criterion = Some("vehicles keep 1 m of clearance (this program)".to_owned());

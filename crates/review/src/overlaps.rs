@@ -43,7 +43,7 @@ pub(super) fn overlaps(
             continue;
         }
         let found = search.of_vehicle(&own);
-        lines.extend(found.pairs.iter().map(|pair| pair.line(network, plan, name, places)));
+        lines.extend(found.groups().iter().map(|pairs| line(network, plan, (name, pairs), places)));
         let rest = match (found.pairs.is_empty(), found.num_declared) {
             _ if found.is_cut => Some((
                 Status::Attention,
@@ -133,9 +133,8 @@ struct Search<'a> {
 /// What was found of one vehicle.
 #[derive(Default)]
 struct Found {
-    /// The first of each two activities, by what they are called.
-    pairs: Vec<Pair>,
-    names: BTreeSet<[SmolStr; 2]>,
+    /// The pairs that may overlap, by the names of their activities.
+    pairs: BTreeMap<[SmolStr; 2], Vec<Pair>>,
     /// How many pairs may overlap because the mission declares it.
     num_declared: usize,
     /// Whether some pairs were not looked at.
@@ -143,9 +142,22 @@ struct Found {
 }
 
 /// Two activities that may overlap.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Pair {
     first: OccurrenceId,
     second: OccurrenceId,
+}
+
+impl Found {
+    /// Returns the pairs in order, those of the same two activities together.
+    fn groups(&self) -> Vec<Vec<Pair>> {
+        let mut groups: Vec<Vec<Pair>> = self.pairs.values().cloned().collect();
+        for pairs in &mut groups {
+            pairs.sort_unstable();
+        }
+        groups.sort_unstable();
+        groups
+    }
 }
 
 impl Search<'_> {
@@ -179,7 +191,6 @@ impl Search<'_> {
             }
             inside.push(all);
         }
-        found.pairs.sort_by_key(|pair| (pair.first, pair.second));
         found
     }
 
@@ -191,7 +202,7 @@ impl Search<'_> {
                 let [one, other] = [first, second].map(|id| &network.occurrences[id.index()]);
                 let mut names = [one.activity.clone(), other.activity.clone()];
                 names.sort();
-                if found.names.contains(&names) || !self.windows_meet(one, other) {
+                if !self.windows_meet(one, other) {
                     continue;
                 }
                 let is_declared = self.occupied.contains(&first) && self.occupied.contains(&second);
@@ -207,8 +218,8 @@ impl Search<'_> {
                     found.num_declared += 1;
                     continue;
                 }
-                found.names.insert(names);
-                found.pairs.push(Pair { first: first.min(second), second: first.max(second) });
+                let pair = Pair { first: first.min(second), second: first.max(second) };
+                found.pairs.entry(names).or_default().push(pair);
             }
         }
     }
@@ -235,30 +246,38 @@ impl Search<'_> {
     }
 }
 
-impl Pair {
-    fn line(&self, network: &Network, plan: &Plan, vehicle: &str, places: &Places<'_>) -> Line {
-        let [one, other] = [self.first, self.second].map(|id| &network.occurrences[id.index()]);
-        let who = if one.activity == other.activity {
-            format!("two of {}", one.activity)
-        } else {
-            format!("{} and {}", one.activity, other.activity)
-        };
-        let window = |node: tpn::NodeId| plan.windows.get(node.index()).copied().flatten();
-        let from = [one.start, other.start].into_iter().filter_map(window).map(|it| it.earliest).max();
-        let to = [one.end, other.end].into_iter().filter_map(window).map(|it| it.latest).min();
-        let when = match (from, to) {
-            (Some(from), Some(Bound::Finite(to))) => {
-                format!(" from {} to {}", from.readable(), to.readable())
-            }
-            (Some(from), _) => format!(" from {} on", from.readable()),
-            _ => String::new(),
-        };
-        let text = format!(
-            "{who} may overlap on {vehicle}: in some schedule of the plan, {} and {} are in progress at the same time{when}",
-            one.name, other.name
-        );
-        let names = vec![one.name.to_string(), other.name.to_string(), vehicle.to_owned()];
-        let nodes = vec![one.start, one.end, other.start, other.end];
-        places.line(Status::Attention, text, one.span, names, nodes)
-    }
+/// The item of all pairs of the same two activities: whoever acknowledges it acknowledges each of them, in its place.
+fn line(network: &Network, plan: &Plan, (vehicle, pairs): (&str, &[Pair]), places: &Places<'_>) -> Line {
+    let occurrence = |id: OccurrenceId| &network.occurrences[id.index()];
+    let Pair { first, second } = pairs[0];
+    let [one, other] = [first, second].map(occurrence);
+    let who = if one.activity == other.activity {
+        format!("two of {}", one.activity)
+    } else {
+        format!("{} and {}", one.activity, other.activity)
+    };
+    let window = |node: tpn::NodeId| plan.windows.get(node.index()).copied().flatten();
+    let from = [one.start, other.start].into_iter().filter_map(window).map(|it| it.earliest).max();
+    let to = [one.end, other.end].into_iter().filter_map(window).map(|it| it.latest).min();
+    let when = match (from, to) {
+        (Some(from), Some(Bound::Finite(to))) => format!(" from {} to {}", from.readable(), to.readable()),
+        (Some(from), _) => format!(" from {} on", from.readable()),
+        _ => String::new(),
+    };
+    let more = match pairs.len() - 1 {
+        0 => String::new(),
+        1 => "; another pair may overlap, too".to_owned(),
+        count => format!("; {count} other pairs may overlap, too"),
+    };
+    let text = format!(
+        "{who} may overlap on {vehicle}: in some schedule of the plan, {} and {} are in progress at the same time{when}{more}",
+        one.name, other.name
+    );
+    let mut named = vec![first, second];
+    let mut seen = BTreeSet::from([first, second]);
+    named.extend(pairs.iter().flat_map(|pair| [pair.first, pair.second]).filter(|id| seen.insert(*id)));
+    let mut names: Vec<String> = named.iter().map(|&id| occurrence(id).name.to_string()).collect();
+    names.insert(2, vehicle.to_owned());
+    let nodes = named.iter().flat_map(|&id| [occurrence(id).start, occurrence(id).end]).collect();
+    places.line(Status::Attention, text, one.span, names, nodes)
 }

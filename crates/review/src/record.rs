@@ -53,8 +53,8 @@ pub struct Record {
     subjects: BTreeMap<String, Kept>,
     /// Texts that are known by their content hashes.
     known_sources: BTreeMap<String, String>,
-    /// What runs with chance came to, the latest content last. Anybody can make them again; an approval signs their digest
-    /// ([`Record::drop_unsigned_runs`]).
+    /// What runs with chance came to, the latest content last. Anyone can write any figures into a document, and sign them, so
+    /// those of a document count only once they were made again.
     pub runs: Vec<Runs>,
 }
 
@@ -72,11 +72,14 @@ impl Kept {
     }
 }
 
+/// Monte Carlo runs of one content, at most.
+pub const MAX_RUNS: u64 = 100_000;
+
 /// Contents of which runs are kept.
 pub const MAX_RUNS_KEPT: usize = 8;
 
 /// The rules of a mission of which no one has set any.
-static USUAL_RULES: LazyLock<FlightRules> = LazyLock::new(FlightRules::default);
+pub(super) static USUAL_RULES: LazyLock<FlightRules> = LazyLock::new(FlightRules::default);
 
 /// The format of the document.
 pub const FORMAT: &str = "enroute-review/3";
@@ -314,7 +317,7 @@ impl Record {
 
     /// Adds an entry after all others that are not dated later, signed. Returns its digest.
     pub fn add(&mut self, who: Who, act: Act, secret: &SecretKey) -> String {
-        let said = Said { rules: self.rules().digest(), ..self.said(who, act) };
+        let said = Said { rules: self.ruling.digests(), ..self.said(who, act) };
         self.insert(Entry::signed(said, secret))
     }
 
@@ -411,16 +414,6 @@ impl Record {
         self.runs.drain(..more);
     }
 
-    /// Leaves out the runs that no valid approval has signed, because anybody can write any figures into a document. Returns
-    /// how many were left out.
-    pub fn drop_unsigned_runs(&mut self) -> usize {
-        let approved = self.standing_entries().filter_map(|entry| self.subject(entry)?.runs.clone());
-        let signed: BTreeSet<String> = approved.collect();
-        let before = self.runs.len();
-        self.runs.retain(|runs| signed.contains(&runs.digest()));
-        before - self.runs.len()
-    }
-
     /// Returns what runs of this content came to.
     pub fn runs_of(&self, content_hash: &str) -> Option<&Runs> {
         self.runs.iter().find(|runs| runs.content_hash == content_hash)
@@ -507,6 +500,9 @@ impl Record {
         }
         if record.runs.iter().any(|runs| runs.tally.succeeded > runs.tally.runs) {
             return Err(RecordError::Damaged("more runs reached the end than were made".to_owned()));
+        }
+        if record.runs.iter().any(|runs| runs.tally.runs > MAX_RUNS) {
+            return Err(RecordError::Damaged(format!("it has more than {MAX_RUNS} Monte Carlo runs")));
         }
         let Value::Object(subjects) = value["subjects"].take() else { return Err(lacks("subjects")) };
         for (digest, subject) in subjects {
@@ -617,7 +613,7 @@ impl Record {
 
 /// Entries in order of time, each after those that it was made after and the one that it is about: one order, whatever
 /// order they come in.
-fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
+pub(super) fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
     let all: BTreeSet<&str> = entries.iter().map(Entry::digest).collect();
     let mut waits_for: Vec<usize> = Vec::with_capacity(entries.len());
     let mut after: BTreeMap<&str, Vec<usize>> = BTreeMap::new();

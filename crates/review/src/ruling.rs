@@ -2,31 +2,27 @@
 //!
 //! Every trusted person sets flight rules. Rules that weaken the board take effect once people who could complete the
 //! board in force have signed the same rules: otherwise one person could set a board that this person alone completes.
-//! If two people set rules without knowing of each other, the stricter board is in force; if neither is stricter, nothing is
-//! approved in this history any more.
+//! If two people set rules without knowing of each other, the stricter board is in force; if neither is stricter, both are,
+//! and nothing is approved until both boards agree to the same rules.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::FlightRules;
 use super::check::{Check, Signature};
 use super::keys::PublicKey;
-use super::record::{Act, Entry, Record};
-use super::seat;
+use super::record::{Act, Entry, Record, USUAL_RULES};
+use super::{names, seat};
 
-/// Which entries set the flight rules in force, by their indices.
+/// Rules that may be in force at the same time. If more conflict, nothing is approved in this history any more.
+const MAX_IN_FORCE: usize = 8;
+
+/// Which flight rules a history has, by the indices of its entries.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ruling {
-    /// Those that set the rules in force: the last one put them into force. Empty while no one has set any.
-    set_by: Vec<usize>,
-    /// Those that set the board in force, and perhaps other flight rules with it.
-    board_by: Vec<usize>,
-    /// The first two entries that set rules without knowing of each other, where neither board is at least as strict as the
-    /// other. No later entry ends that: an entry that comes before others, by its date, could undo what they agreed to.
-    conflicting: Vec<usize>,
+    /// The rules in force: one, or several that conflict. Empty only before a history was read.
+    in_force: Vec<InForce>,
     /// Which entries follow the last change of the rules; `None` if they have never changed.
     under: Option<Vec<bool>>,
-    /// Changes that the board in force has not agreed to, each with the entries that ask for it.
-    proposed: Vec<Vec<usize>>,
     /// Entries that set rules to which the board did not agree.
     without_effect: BTreeSet<usize>,
     /// The digests of rules that are in force, or have been.
@@ -34,29 +30,37 @@ pub(super) struct Ruling {
 }
 
 /// Rules in force.
-struct InForce<'a> {
-    rules: &'a FlightRules,
+#[derive(Clone, Debug)]
+struct InForce {
+    /// An entry that sets these rules; `None` of the usual rules if no one has set them.
+    at: Option<usize>,
     digest: String,
+    /// Entries that set them: the last one put them into force.
     set_by: Vec<usize>,
+    /// Entries that set their board, perhaps with other flight rules.
     board_by: Vec<usize>,
-    /// The digests of entries that follow the last change to these rules, and of that one; `None` of the usual rules,
+    /// Which of the entries so far follow the last change to these rules, or are that change; `None` of the usual rules,
     /// which everyone knows.
-    followers: Option<BTreeSet<&'a str>>,
+    followers: Option<Vec<bool>>,
+    /// Rules that weaken the board, by their digests.
+    proposed: BTreeMap<String, Proposed>,
 }
 
-impl InForce<'_> {
-    /// Returns whether the signer of an entry knew these rules.
-    fn is_known_to(&self, entry: &Entry) -> bool {
-        let follows = |followers: &BTreeSet<&str>| {
-            followers.contains(entry.digest())
-                || entry.former.iter().any(|former| followers.contains(former.as_str()))
-        };
-        self.followers.as_ref().is_none_or(follows)
-    }
+/// Rules that wait for the board.
+#[derive(Clone, Debug, Default)]
+struct Proposed {
+    /// The first entry of each person who signed them.
+    by: Vec<usize>,
+    people: BTreeSet<PublicKey>,
+    /// Later entries of the same people.
+    again: BTreeSet<usize>,
 }
 
 /// What an entry that sets rules does to rules in force.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Effect {
+    /// It sets the same rules.
+    Keeps,
     /// It replaces them.
     Replaces,
     /// It replaces them if their board agrees.
@@ -67,13 +71,64 @@ enum Effect {
     Nothing,
 }
 
-fn effect(entry: &Entry, rules: &FlightRules, before: &InForce<'_>) -> Effect {
-    let weakens = seat::weakens(&before.rules.board, &rules.board);
-    match (weakens, before.is_known_to(entry)) {
-        (false, _) => Effect::Replaces,
-        (true, true) => Effect::Weakens,
-        (true, false) if seat::weakens(&rules.board, &before.rules.board) => Effect::Conflicts,
-        (true, false) => Effect::Nothing,
+/// A history whose rules are looked at, entry by entry.
+struct Entries<'a> {
+    entries: &'a [Entry],
+    /// Where each entry is, by its digest.
+    indices: BTreeMap<&'a str, usize>,
+}
+
+impl<'a> Entries<'a> {
+    fn new(entries: &'a [Entry]) -> Self {
+        let indices = entries.iter().enumerate().map(|(index, entry)| (entry.digest(), index)).collect();
+        Self { entries, indices }
+    }
+
+    /// Returns whether an entry was made after one that is marked.
+    fn follows(&self, index: usize, marked: &[bool]) -> bool {
+        let mut former = self.entries[index].former.iter().filter_map(|it| self.indices.get(it.as_str()));
+        former.any(|&former| marked.get(former) == Some(&true))
+    }
+
+    fn rules(&self, in_force: &InForce) -> &'a FlightRules {
+        in_force.at.and_then(|index| rules_of(&self.entries[index])).unwrap_or(&USUAL_RULES)
+    }
+
+    /// Returns what the entry at `index`, which sets `rules` with this digest, does to rules in force.
+    fn effect(&self, index: usize, (rules, digest): (&FlightRules, &str), before: &InForce) -> Effect {
+        let (board, new) = (&self.rules(before).board, &rules.board);
+        if before.digest == digest {
+            Effect::Keeps
+        } else if !seat::weakens(board, new) {
+            Effect::Replaces
+        } else if before.is_known_to(index, &self.entries[index]) {
+            Effect::Weakens
+        } else if seat::weakens(new, board) {
+            Effect::Conflicts
+        } else {
+            Effect::Nothing
+        }
+    }
+}
+
+impl InForce {
+    fn new(at: Option<usize>, digest: String, set_by: Vec<usize>, num_before: usize) -> Self {
+        // Only the entry that set the rules follows them so far.
+        let followers = at.map(|_| {
+            let mut followers = vec![false; num_before];
+            followers.push(true);
+            followers
+        });
+        let board_by = set_by.clone();
+        Self { at, digest, set_by, board_by, followers, proposed: BTreeMap::new() }
+    }
+
+    /// Returns whether the signer of an entry knew these rules: it follows them, and names them. What it follows does not
+    /// suffice, because everyone chooses that.
+    fn is_known_to(&self, index: usize, entry: &Entry) -> bool {
+        let is_known =
+            |followers: &Vec<bool>| followers[index] && entry.rules.split(' ').any(|it| it == self.digest);
+        self.followers.as_ref().is_none_or(is_known)
     }
 }
 
@@ -81,91 +136,85 @@ impl Ruling {
     /// Of entries in order, with what was found of each. Everyone chooses the dates of their entries, and what these
     /// follow, so the order decides nothing between entries that do not follow each other: only the stricter board has effect.
     pub(super) fn new(entries: &[Entry], checks: &[Check]) -> Self {
-        let usual = FlightRules::default();
-        let mut ruling = Self::default();
-        let mut in_force = InForce {
-            rules: &usual,
-            digest: usual.digest(),
-            set_by: Vec::new(),
-            board_by: Vec::new(),
-            followers: None,
-        };
+        let usual = InForce::new(None, USUAL_RULES.digest(), Vec::new(), 0);
+        let mut ruling = Self { in_force: vec![usual], ..Self::default() };
+        let all = Entries::new(entries);
         for (index, (entry, check)) in entries.iter().zip(checks).enumerate() {
-            if in_force.is_known_to(entry)
-                && let Some(followers) = &mut in_force.followers
-            {
-                followers.insert(entry.digest());
+            for in_force in &mut ruling.in_force {
+                if let Some(followers) = &mut in_force.followers {
+                    let follows = all.follows(index, followers);
+                    followers.push(follows);
+                }
             }
-            let Act::Rules { rules } = &entry.act else { continue };
-            if check.counts() {
-                ruling.add(entries, (index, rules), &mut in_force);
+            if let Some(rules) = rules_of(entry).filter(|_| check.counts()) {
+                ruling.add(&all, index, rules);
             }
         }
-        if in_force.followers.is_some() {
-            ruling.under = Some(entries.iter().map(|entry| in_force.is_known_to(entry)).collect());
-        } else {
+        let last = ruling.in_force.last();
+        ruling.under = last.and_then(|it| it.followers.clone());
+        if ruling.under.is_none() {
             // Otherwise, anyone could approve by the usual rules what the board has not seen.
-            ruling.ever_in_force.insert(in_force.digest);
+            ruling.ever_in_force.insert(USUAL_RULES.digest());
         }
-        (ruling.set_by, ruling.board_by) = (in_force.set_by, in_force.board_by);
         ruling
     }
 
     /// Takes in an entry that sets rules, after all before it.
-    fn add<'a>(
-        &mut self,
-        entries: &'a [Entry],
-        (index, rules): (usize, &'a FlightRules),
-        in_force: &mut InForce<'a>,
-    ) {
-        let entry = &entries[index];
-        if in_force.rules == rules {
+    fn add(&mut self, all: &Entries<'_>, index: usize, rules: &FlightRules) {
+        let digest = rules.digest();
+        let effects: Vec<Effect> =
+            self.in_force.iter().map(|before| all.effect(index, (rules, &digest), before)).collect();
+        if let ([Effect::Keeps], [only]) = (effects.as_slice(), self.in_force.as_mut_slice()) {
             // No change: approvals before it are of the same rules.
-            if in_force.set_by.is_empty() {
-                (in_force.set_by, in_force.board_by) = (vec![index], vec![index]);
+            if only.set_by.is_empty() {
+                (only.at, only.set_by, only.board_by) = (Some(index), vec![index], vec![index]);
             }
             return;
         }
+        if effects.contains(&Effect::Nothing) || self.in_force.len() > MAX_IN_FORCE {
+            self.without_effect.insert(index);
+            return;
+        }
         let mut signed = vec![index];
-        match effect(entry, rules, in_force) {
-            Effect::Replaces => {}
-            Effect::Nothing => {
-                self.without_effect.insert(index);
-                return;
+        let mut is_agreed = true;
+        let weakened =
+            self.in_force.iter_mut().zip(&effects).filter(|(_, effect)| **effect == Effect::Weakens);
+        for (before, _) in weakened {
+            let board = &all.rules(before).board;
+            let proposed = before.proposed.entry(digest.clone()).or_default();
+            let is_new = all.entries[index].key.clone().is_some_and(|key| proposed.people.insert(key));
+            if is_new {
+                proposed.by.push(index);
+            } else {
+                proposed.again.insert(index);
             }
-            Effect::Conflicts => {
-                self.without_effect.insert(index);
-                if self.conflicting.is_empty() {
-                    self.conflicting = in_force.set_by.last().copied().into_iter().chain([index]).collect();
-                }
-                return;
-            }
-            Effect::Weakens => {
-                // Who agreed to leave other rules than these did not agree to leave these.
-                if !in_force.set_by.is_empty() && entry.rules != in_force.digest {
-                    self.without_effect.insert(index);
-                    return;
-                }
-                let same = |indices: &Vec<usize>| rules_of(entries, indices) == Some(rules);
-                if let Some(known) = self.proposed.iter().position(same) {
-                    signed = self.proposed.remove(known);
-                    signed.push(index);
-                }
-                let board = &in_force.rules.board;
-                if seat::filled(board, &keys_of(entries, &signed)) < seat::wanted(board) {
-                    self.without_effect.insert(index);
-                    self.proposed.push(signed);
-                    return;
-                }
+            is_agreed &= seat::filled(board, &proposed.people.iter().collect()) >= seat::wanted(board);
+            signed.clone_from(&proposed.by);
+        }
+        if !is_agreed {
+            self.without_effect.insert(index);
+            return;
+        }
+        for proposed in self.in_force.iter().filter_map(|before| before.proposed.get(&digest)) {
+            for index in proposed.by.iter().chain(&proposed.again) {
+                self.without_effect.remove(index);
             }
         }
-        self.without_effect.retain(|index| !signed.contains(index));
-        let keeps_board = in_force.rules.board == rules.board && !in_force.board_by.is_empty();
-        let board_by = if keeps_board { in_force.board_by.clone() } else { signed.clone() };
-        let (digest, followers) = (rules.digest(), Some(BTreeSet::from([entry.digest()])));
-        self.ever_in_force.insert(digest.clone());
-        *in_force = InForce { rules, digest, set_by: signed, board_by, followers };
-        self.proposed.clear();
+        if effects.contains(&Effect::Keeps)
+            && effects.iter().all(|it| matches!(it, Effect::Keeps | Effect::Conflicts))
+        {
+            return;
+        }
+        let mut new = InForce::new(Some(index), digest.clone(), signed, index);
+        let replaced = self.in_force.iter().zip(&effects).filter(|(_, effect)| **effect != Effect::Conflicts);
+        let same = |before: &&InForce| !before.board_by.is_empty() && all.rules(before).board == rules.board;
+        if let Some(before) = replaced.map(|(before, _)| before).find(same) {
+            new.board_by.clone_from(&before.board_by);
+        }
+        let mut effects = effects.iter();
+        self.in_force.retain(|_| effects.next() == Some(&Effect::Conflicts));
+        self.in_force.push(new);
+        self.ever_in_force.insert(digest);
     }
 
     /// Returns whether rules with this digest are in force, or have been.
@@ -177,30 +226,29 @@ impl Ruling {
     pub(super) fn is_under(&self, index: usize) -> bool {
         self.under.as_ref().is_none_or(|under| under.get(index) == Some(&true))
     }
+
+    /// Returns what an entry signs as the rules that its signer knows: the digests of all that are in force.
+    pub(super) fn digests(&self) -> String {
+        let digests: Vec<&str> = self.in_force.iter().map(|it| it.digest.as_str()).collect();
+        if digests.is_empty() { USUAL_RULES.digest() } else { digests.join(" ") }
+    }
 }
 
-fn rules_of<'a>(entries: &'a [Entry], indices: &[usize]) -> Option<&'a FlightRules> {
-    match &entries.get(*indices.last()?)?.act {
+fn rules_of(entry: &Entry) -> Option<&FlightRules> {
+    match &entry.act {
         Act::Rules { rules } => Some(rules),
         _ => None,
     }
 }
 
-fn keys_of<'a>(entries: &'a [Entry], indices: &[usize]) -> BTreeSet<&'a PublicKey> {
-    indices.iter().filter_map(|&index| entries.get(index)?.key.as_ref()).collect()
-}
-
 /// For each entry, whether it is the one at `first`, or was made after it.
 pub(super) fn followers(entries: &[Entry], first: usize) -> Vec<bool> {
-    let mut digests: BTreeSet<&str> = BTreeSet::new();
-    let follows = entries.iter().enumerate().map(|(index, entry)| {
-        let follows = index == first || entry.former.iter().any(|former| digests.contains(former.as_str()));
-        if follows {
-            digests.insert(entry.digest());
-        }
-        follows
-    });
-    follows.collect()
+    let all = Entries::new(entries);
+    let mut marked = Vec::with_capacity(entries.len());
+    for index in 0..entries.len() {
+        marked.push(index == first || all.follows(index, &marked));
+    }
+    marked
 }
 
 /// Flight rules that weaken the board, and that the board in force has not agreed to.
@@ -209,61 +257,98 @@ pub struct Proposal<'a> {
     /// Who asked for them, and who has agreed, in order.
     pub by: Vec<&'a Entry>,
     pub rules: &'a FlightRules,
-    /// How many approvals of the board in force those people could give.
+    /// Who set the board that has to agree, if several are in force.
+    pub of: Option<&'a str>,
+    /// How many approvals of that board those people could give.
     pub agreed: usize,
-    /// How many approvals the board in force needs.
+    /// How many approvals that board needs.
     pub wanted: usize,
 }
 
 impl Proposal<'_> {
     /// Returns how far the board in force agrees: `1 of 2 approvals of the board in force`.
     pub fn consent(&self) -> String {
-        format!("{} of {} approvals of the board in force", self.agreed, self.wanted)
+        let board = match self.of {
+            None => "the board in force".to_owned(),
+            Some(by) => format!("the board that {} set", names::one_line(by)),
+        };
+        format!("{} of {} approvals of {board}", self.agreed, self.wanted)
     }
 }
 
 impl Record {
     /// The flight rules that are in force, with who put them into force; `None` while no one has set any.
     pub fn ruled(&self) -> Option<(&Entry, &FlightRules)> {
-        let indices = &self.ruling().set_by;
-        Some((self.entries().get(*indices.last()?)?, rules_of(self.entries(), indices)?))
+        let entry = self.entries().get(*self.ruling().in_force.last()?.set_by.last()?)?;
+        Some((entry, rules_of(entry)?))
     }
 
     /// Returns who set the flight rules in force, and who agreed to them; empty while no one has set any.
     pub fn rules_by(&self) -> Vec<&Entry> {
-        self.at(&self.ruling().set_by)
+        self.ruling().in_force.last().map_or_else(Vec::new, |in_force| self.at(&in_force.set_by))
     }
 
     /// Returns who set the board in force, and who agreed to it; empty while no one has set any.
     pub fn board_by(&self) -> Vec<&Entry> {
-        self.at(&self.ruling().board_by)
+        self.ruling().in_force.last().map_or_else(Vec::new, |in_force| self.at(&in_force.board_by))
     }
 
-    /// Returns the first two entries that set different flight rules without knowing of each other, where neither board is at
-    /// least as strict as the other: nothing is approved in this history any more.
+    /// Returns the entries that put different flight rules into force without knowing of each other, where neither board is at
+    /// least as strict as the other: nothing is approved until both boards agree to the same rules.
     pub fn conflicting_rules(&self) -> Vec<&Entry> {
-        self.at(&self.ruling().conflicting)
+        let [_, _, ..] = self.ruling().in_force.as_slice() else { return Vec::new() };
+        let last: Vec<usize> =
+            self.ruling().in_force.iter().filter_map(|in_force| in_force.set_by.last().copied()).collect();
+        self.at(&last)
     }
 
-    /// Returns the last entry that sets flight rules, if all such entries are signed with unknown keys: the usual board is in
-    /// force then, which whoever left out the key of the right person may complete.
+    /// Returns the last entry that sets flight rules with an unknown key, unless a trusted person who knew of it has set flight
+    /// rules since. Otherwise, whoever leaves out the key of the right person would get a weaker board.
     pub fn unknown_rules(&self) -> Option<&Entry> {
-        let sets_rules = |entry: &Entry| matches!(entry.act, Act::Rules { .. });
-        let mut unknown = self
-            .checked()
-            .filter(|(entry, check)| sets_rules(entry) && check.signature == Signature::Unknown);
-        self.ruled().is_none().then(|| unknown.next_back())?.map(|(entry, _)| entry)
+        let mut is_seen = vec![false; self.entries().len()];
+        let mut last = None;
+        for (index, (entry, check)) in (0..is_seen.len()).rev().zip(self.checked().rev()) {
+            if rules_of(entry).is_some() {
+                let is_unknown = check.signature == Signature::Unknown && check.problem.is_none();
+                if is_unknown && !is_seen[index] {
+                    last = last.or(Some(entry));
+                }
+                is_seen[index] |= check.counts();
+            }
+            if is_seen[index] {
+                for former in entry.former.iter().filter_map(|former| self.number(former).checked_sub(1)) {
+                    is_seen[former] = true;
+                }
+            }
+        }
+        last
+    }
+
+    /// Returns whether one set of flight rules is in force, and no unknown key has set others since.
+    pub fn has_settled_rules(&self) -> bool {
+        self.ruling().in_force.len() <= 1 && self.unknown_rules().is_none()
     }
 
     /// Changes of the board that wait for the board in force.
     pub fn proposals(&self) -> Vec<Proposal<'_>> {
-        let board = &self.rules().board;
-        let proposal = |indices: &Vec<usize>| {
-            let rules = rules_of(self.entries(), indices)?;
-            let agreed = seat::filled(board, &keys_of(self.entries(), indices));
-            Some(Proposal { by: self.at(indices), rules, agreed, wanted: seat::wanted(board) })
-        };
-        self.ruling().proposed.iter().filter_map(proposal).collect()
+        let proposals = self.ruling().in_force.iter().flat_map(|in_force| {
+            in_force.proposed.values().filter_map(|proposed| self.proposal(in_force, proposed))
+        });
+        let mut proposals: Vec<Proposal<'_>> = proposals.collect();
+        proposals.sort_by_key(|proposal| proposal.by.first().map(|entry| self.number(entry.digest())));
+        proposals
+    }
+
+    fn proposal(&self, in_force: &InForce, proposed: &Proposed) -> Option<Proposal<'_>> {
+        let by = self.at(&proposed.by);
+        let rules = rules_of(by.first()?)?;
+        let board = in_force.at.and_then(|index| rules_of(self.entries().get(index)?));
+        let board = &board.unwrap_or(&USUAL_RULES).board;
+        let agreed = seat::filled(board, &proposed.people.iter().collect());
+        let is_one_of_several = self.ruling().in_force.len() > 1;
+        let of = in_force.set_by.last().filter(|_| is_one_of_several);
+        let of = of.and_then(|&index| Some(self.entries().get(index)?.by.as_str()));
+        Some(Proposal { by, rules, of, agreed, wanted: seat::wanted(board) })
     }
 
     /// Returns what was found of an entry, in words, with the reason if it has no effect: `valid`, `unknown key: …`.
@@ -277,12 +362,18 @@ impl Record {
     /// Returns why an entry that counts has no effect, if it sets flight rules to which the board did not agree.
     pub fn without_effect(&self, entry: &Entry) -> Option<String> {
         let index = self.number(entry.digest()).checked_sub(1)?;
+        let in_force = &self.ruling().in_force;
+        if in_force.len() > 1 && in_force.iter().any(|it| it.set_by.last() == Some(&index)) {
+            return Some("conflicts with other flight rules".to_owned());
+        }
         if !self.ruling().without_effect.contains(&index) {
             return None;
         }
-        let mut proposals = self.proposals().into_iter();
-        let open = proposals.find(|proposal| proposal.by.iter().any(|it| it.digest() == entry.digest()));
-        Some(match open {
+        let digest = rules_of(entry)?.digest();
+        let open = in_force.iter().find_map(|it| Some((it, it.proposed.get(&digest)?)));
+        let open =
+            open.filter(|(_, proposed)| proposed.by.contains(&index) || proposed.again.contains(&index));
+        Some(match open.and_then(|(in_force, proposed)| self.proposal(in_force, proposed)) {
             Some(open) => format!("weakens the board, with {}", open.consent()),
             None => "weakened the board, which did not agree".to_owned(),
         })
@@ -292,3 +383,6 @@ impl Record {
         indices.iter().filter_map(|&index| self.entries().get(index)).collect()
     }
 }
+
+#[cfg(test)]
+mod random_tests;

@@ -8,14 +8,15 @@ use clap::ValueEnum;
 use interchange::geojson::{EARTH_RADIUS_M, Projection};
 use report::calendar::Calendar;
 use report::export;
-use review::record::Runs;
 use review::{PlanStatus, Present, content_hash, review, standing};
 use serde_json::{Value, json};
 use snapshot::Snapshot;
 
 use crate::commands::import::{parse_degrees, parse_radius};
+use crate::deadline::Deadline;
 use crate::diagnostics::print_problems;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_error, print_json, print_verbatim};
+use crate::repeated::repeat;
 use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
@@ -89,7 +90,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mission = args.target.open()?;
     args.output.as_deref().map_or(Ok(()), refuse_input)?;
     let name = mission.short_name();
-    let (snapshot, _) = mission.evaluate(args.options.seed, args.options.time_limit.start())?;
+    let deadline = args.options.time_limit.start();
+    let (snapshot, _) = mission.evaluate(args.options.seed, deadline)?;
     let is_planned = snapshot.plan().is_some();
     if args.options.format == Format::Text {
         print_problems(&name, &snapshot.source, &snapshot.problems)?;
@@ -103,7 +105,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(if snapshot.network.is_some() { NO } else { WRONG }));
     }
-    let text = args.text(&snapshot)?;
+    let text = args.text(&snapshot, deadline)?;
     match &args.output {
         Some(path) => {
             save(path, &text)?;
@@ -118,16 +120,20 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    fn text(&self, snapshot: &Snapshot) -> anyhow::Result<String> {
+    fn text(&self, snapshot: &Snapshot, deadline: Deadline) -> anyhow::Result<String> {
         let goal = self.target.goal()?;
         let record = self.review.as_deref().map(|path| self.trusted.read(path)).transpose()?;
         let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.options.seed);
-        let status = record.map_or(PlanStatus::Draft, |record| {
-            let mut review = review(snapshot, &goal, self.options.seed, &mut || false);
-            let found = record.runs_of(&hash).map(Runs::robustness);
-            review.hold_against(snapshot, record.rules(), found.as_ref(), &mut || false);
-            standing(&record, &Present::of_review(&review)).status
-        });
+        let status = match record {
+            None => PlanStatus::Draft,
+            Some(record) => {
+                let repeated = repeat(self.target.open()?, (&record, &hash), self.options.seed, deadline)?;
+                let mut review = review(snapshot, &goal, self.options.seed, &mut || false);
+                let found = repeated.map(|repeated| repeated.robustness);
+                review.hold_against(snapshot, record.rules(), found.as_ref(), &mut || false);
+                standing(&record, &Present::of_review(&review)).status
+            }
+        };
         let calendar = self.epoch.as_deref().map(|epoch| calendar(epoch, snapshot)).transpose()?;
         let calendar = calendar.as_ref();
         let about = export::About { content_hash: &hash, status, calendar, pins: &[], plan: None };

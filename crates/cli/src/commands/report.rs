@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use review::record::Runs;
 use review::{FlightRules, Line, Present, Review, Section, Status, TimeRange, review, standing};
 use serde_json::{Value, json};
 use snapshot::{Robustness, RobustnessSettings};
@@ -13,6 +12,7 @@ use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::repeated::repeat;
 use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
@@ -54,9 +54,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(path) => read_rules(path)?,
         None => record.rules().clone(),
     };
-    let robustness = match &args.robustness {
-        Some(path) => Some(read_robustness(path, &review.content_hash)?),
-        None => record.runs_of(&review.content_hash).map(Runs::robustness),
+    let robustness = if let Some(path) = &args.robustness {
+        Some(read_robustness(path, &review.content_hash)?)
+    } else {
+        let content = (&record, review.content_hash.as_str());
+        let repeated = repeat(args.target.open()?, content, args.options.seed, deadline)?;
+        repeated.map(|repeated| repeated.robustness)
     };
     review.hold_against(snapshot, &rules, robustness.as_ref(), &mut || false);
     let page = args.output.as_deref().map(|path| {
@@ -85,7 +88,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_problems(name, &snapshot.source, &snapshot.problems)?;
             print_text(&summary(&review))?;
             let standing = standing(&record, &Present::of_review(&review));
-            print_text(&format!("{}: {}\n", standing.status.name(), standing.seats_in_words()))?;
+            print_text(&format!("{}; approvals: {}\n", standing.status.name(), standing.seats_in_words()))?;
         }
     }
     let status = match (&snapshot.network, review.status) {
@@ -129,7 +132,7 @@ fn summary(review: &Review) -> String {
     let information = review.count(Status::Information);
     let need = if attention == 1 { "needs" } else { "need" };
     let mut text = format!(
-        "{passed} passed, {attention} {need} attention, {failed} failed; {information} for information\n"
+        "{passed} passed, {attention} {need} attention, {failed} failed; {information} informational\n"
     );
     for section in Section::ALL {
         let lines = review.lines(section).into_iter().filter(|line| line.status > Status::Passed);

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 use review::names::one_line;
-use review::record::{Entry, RecordError, Runs, short};
+use review::record::{Entry, RecordError, short};
 use review::rules::RequiredRules;
 use review::{Check, PlanStatus, Present, Record, Review, Standing, Waiver, WaiverState, review, standing};
 use serde_json::{Value, json};
@@ -15,6 +15,7 @@ use crate::deadline::Undecided;
 use crate::input::read_text;
 use crate::opened::Opened;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
+use crate::repeated::{Repeated, repeat};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
@@ -62,8 +63,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     args.run()
 }
 
+/// A content, reviewed.
+struct Reviewed {
+    review: Review,
+    source: String,
+    /// Its Monte Carlo runs, if the history has some.
+    repeated: Option<Repeated>,
+}
+
 /// What was found of a history.
 struct Found<'a> {
+    repeated: Option<Repeated>,
     record: &'a Record,
     standing: Standing<'a>,
     content_hash: &'a str,
@@ -88,11 +98,14 @@ impl Verify {
         if let Some(missing) = self.has.iter().find(|digest| record.entry(digest).is_none()) {
             return self.refuse(&format!("the entry {missing} is missing"));
         }
-        let review = self.review(&record)?;
-        let review = review.map(|(review, source)| {
-            record.learn_source(&review.content_hash, &source);
-            review
-        });
+        let found = self.review(&record)?;
+        let (review, repeated) = match found {
+            Some(Reviewed { review, source, repeated }) => {
+                record.learn_source(&review.content_hash, &source);
+                (Some(review), repeated)
+            }
+            None => (None, None),
+        };
         let (present, content_hash) = if let Some(review) = &review {
             (Present::of_review(review), review.content_hash.as_str())
         } else {
@@ -116,7 +129,7 @@ impl Verify {
         if !differences.is_empty() {
             blockers.push(format!("not the required flight rules: {}", differences.join(", ")));
         }
-        let found = Found { record: &record, standing, content_hash, blockers };
+        let found = Found { repeated, record: &record, standing, content_hash, blockers };
         match self.options.format {
             Format::Json => print_json(&document("review-check", &[], body(&found)))?,
             Format::Text => print_text(&words(&found))?,
@@ -144,33 +157,42 @@ impl Verify {
         Ok(exit(NO))
     }
 
-    /// The review of the mission, or of the text that was approved last, with that text; nothing if there is neither.
-    fn review(&self, record: &Record) -> anyhow::Result<Option<(Review, String)>> {
-        let (mission, goal, seed) = match (&self.mission, record.last_approval()) {
-            (Some(mission), _) => {
-                let (file, scenario) = (mission.clone(), self.scenario.clone());
-                let target = Target { file, scenario, activity: None, bounds: None };
-                (target.open()?, target.goal()?, self.options.seed)
-            }
-            (None, Some((_, approved))) => {
+    /// The review of the mission, or of the text that was approved last; nothing if there is neither.
+    fn review(&self, record: &Record) -> anyhow::Result<Option<Reviewed>> {
+        let target = self.mission.clone().map(|file| Target {
+            file,
+            scenario: self.scenario.clone(),
+            activity: None,
+            bounds: None,
+        });
+        let approved = record.last_approval().map(|(_, approved)| approved);
+        let open = || match (&target, approved) {
+            (Some(target), _) => Ok(Some((target.open()?, target.goal()?, self.options.seed))),
+            (None, Some(approved)) => {
                 let goal: Goal = approved.goal.clone();
-                (Opened::new(&self.file, approved.source.clone(), goal.clone()), goal, approved.seed)
+                let mission = Opened::new(&self.file, approved.source.clone(), goal.clone());
+                Ok(Some((mission, goal, approved.seed)))
             }
-            (None, None) => return Ok(None),
+            (None, None) => anyhow::Ok(None),
         };
+        let Some((mission, goal, seed)) = open()? else { return Ok(None) };
         let deadline = self.options.time_limit.start();
         let (snapshot, _) = mission.evaluate(seed, deadline)?;
         let limit = deadline.enforce(Undecided::Review, ("review-check", self.options.format));
         let mut review = review(&snapshot, &goal, seed, &mut || false);
-        let found = record.runs_of(&review.content_hash).map(Runs::robustness);
-        review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
+        let repeated = match open()? {
+            Some((mission, ..)) => repeat(mission, (record, &review.content_hash), seed, deadline)?,
+            None => None,
+        };
+        let found = repeated.as_ref().map(|repeated| &repeated.robustness);
+        review.hold_against(&snapshot, record.rules(), found, &mut || false);
         limit.answered();
-        Ok(Some((review, snapshot.source.to_string())))
+        Ok(Some(Reviewed { review, source: snapshot.source.to_string(), repeated }))
     }
 }
 
 fn words(found: &Found<'_>) -> String {
-    let Found { record, standing, content_hash, blockers } = found;
+    let Found { repeated, record, standing, content_hash, blockers } = found;
     let count = record.entries().len();
     let entries = if count == 1 { "entry" } else { "entries" };
     let mut out = format!("history intact: {count} {entries}\n");
@@ -182,7 +204,7 @@ fn words(found: &Found<'_>) -> String {
         out.push_str(&format!("{:>4}  {}\n", index + 1, told(record, entry, check)));
     }
     out.push_str(&format!(
-        "{}: {}; content {}\n",
+        "{}; approvals: {}; content {}\n",
         standing.status.name(),
         standing.seats_in_words(),
         short(content_hash)
@@ -193,6 +215,9 @@ fn words(found: &Found<'_>) -> String {
         short(&record.rules().digest()),
         set_by(&record.rules_by())
     ));
+    if let Some(repeated) = repeated {
+        out.push_str(&format!("Monte Carlo: {}\n", repeated.sentence()));
+    }
     for proposal in record.proposals() {
         out.push_str(&format!(
             "proposed board: {}; {}; {}\n",
@@ -242,7 +267,7 @@ fn told(record: &Record, entry: &Entry, check: &Check) -> String {
 }
 
 fn body(found: &Found<'_>) -> Value {
-    let Found { record, standing, content_hash, blockers } = found;
+    let Found { repeated, record, standing, content_hash, blockers } = found;
     let withdrawn = record.withdrawn();
     let entries = record.checked().map(|(entry, check)| {
         json!({
@@ -296,6 +321,7 @@ fn body(found: &Found<'_>) -> Value {
         "content_hash": content_hash,
         "board": seats.collect::<Vec<Value>>(),
         "rules": rules,
+        "robustness": repeated.as_ref().map(Repeated::json),
         "open_comments": standing.open_comments.len(),
         "blockers": blockers,
         "waivers": waivers.collect::<Vec<Value>>(),

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::Output;
 
 use review::keys::{KeyRing, Person, SecretKey};
-use review::record::{Act, Entry, LineKey, Record, Said, Subject, Who};
+use review::record::{Act, Entry, LineKey, Record, Runs, Said, Subject, Who};
 use review::seat::Seat;
 use review::{FlightRules, Section};
 use serde_json::{Value, json};
+use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use crate::command::enroute;
 
@@ -198,7 +199,7 @@ fn acknowledge(report: &Value, record: &mut Record, mut who: impl FnMut() -> (Se
         let said = |member: &str| line[member].as_str().map(str::to_owned);
         let (section, criterion) = (Section::Plan, said("criterion"));
         let (text, place) = (said("text").expect("words"), said("place").expect("a place"));
-        let line = LineKey { section, text, criterion, place };
+        let line = LineKey { section, text, criterion, place, needs_waiver: false };
         let (secret, who) = who();
         record.add(who, Act::Acknowledge { line, text: "As meant.".to_owned() }, &secret);
     }
@@ -342,6 +343,43 @@ fn approve_small(record: &mut Record, rules: &FlightRules, (secret, who): (Secre
     let relied_on = record.entries().iter().filter(|entry| matches!(entry.act, Act::Acknowledge { .. }));
     let relied_on = relied_on.map(|entry| entry.digest().to_owned()).collect();
     record.approve(who, small_subject(source, rules.clone()), String::new(), relied_on, &secret);
+}
+
+/// The figures of a history are only what someone wrote there; the runs are made again.
+#[test]
+fn monte_carlo_runs_of_a_history_are_repeated() {
+    let output = enroute(&["robustness", SMALL, "--runs", "20", "--run-seed", "5", "--format", "json"]);
+    let made: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    let tally: Tally = serde_json::from_value(made["tally"].clone()).expect("a tally");
+    let settings = RobustnessSettings { runs: 20, seed: 5, uncertainty: Uncertainty::default() };
+    let content = made["mission"].as_str().expect("a hash");
+    let (_, text, keys) = approved_history("repeated.review.json");
+    let reached = tally.succeeded;
+    assert!(reached < 20, "some fail");
+    let other = format!("with another result: {reached} reached the end, but the history says 20\n");
+    for (succeeded, expected) in
+        [(reached, "Monte Carlo: 20 runs repeated, with the same result\n"), (20, &other)]
+    {
+        let tally = Tally { succeeded, ..tally.clone() };
+        let mut record = Record::from_json(&text).expect("a history");
+        record.keep_runs(Runs::new(content, &Robustness { settings: settings.clone(), tally }));
+        let path = written_file("repeated.review.json", &record.to_json());
+        let verify = ["review", "verify", &path, "--trust", &keys, "--mission", SMALL];
+        let said = written(&enroute(&verify));
+        assert!(said.contains(expected), "{said}");
+        let (_, answer) = verified(&verify[2..]);
+        let found = &answer["robustness"];
+        assert_eq!(found["is_same"], succeeded == reached, "{found}");
+        assert_eq!(
+            (&found["repeated"]["succeeded"], &found["kept"]["succeeded"]),
+            (&json!(reached), &json!(succeeded))
+        );
+        let report = enroute(&["report", SMALL, "--review", &path, "--trust", &keys, "--format", "json"]);
+        let report: Value = serde_json::from_str(&written(&report)).expect("JSON");
+        let line = format!("{} % of 20 runs reached the end", reached * 5);
+        let said = &report["robustness"]["text"];
+        assert!(said.as_str().is_some_and(|said| said.contains(&line)), "{said} {line}");
+    }
 }
 
 #[test]
@@ -524,9 +562,12 @@ fn reports_and_schedules_say_how_the_plan_stands() {
         "-o",
         page.to_str().expect("a path in UTF-8"),
     ]);
-    assert!(written(&output).contains("approved: Reviewer 1 of 1"), "{}", written(&output));
+    assert!(written(&output).contains("approved; approvals: Reviewer 1 of 1"), "{}", written(&output));
     let page = std::fs::read_to_string(page).expect("the report");
-    assert!(page.contains("History of the review") && page.contains("approved</span>: Reviewer 1 of 1"));
+    assert!(
+        page.contains("History of the review")
+            && page.contains("approved</span>; approvals: Reviewer 1 of 1")
+    );
     let schedule = enroute(&[
         "export",
         SMALL,

@@ -171,7 +171,9 @@ impl People {
             let (acknowledged, waived) = (About::Line(key.clone()), About::Waived(key));
             indented(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    self.ask(ui, &acknowledged, "Acknowledge…", &line.text);
+                    if !line.needs_waiver {
+                        self.ask(ui, &acknowledged, "Acknowledge…", &line.text);
+                    }
                     self.ask(ui, &waived, "Waive…", &line.text);
                 });
                 self.answer(ui, context, &acknowledged, commands);
@@ -494,7 +496,7 @@ impl People {
             for blocker in standing.blockers() {
                 ui.horizontal_wrapped(|ui| {
                     icon::label(ui, Icon::Warning, tokens.warning);
-                    ui.label(RichText::new(format!("Blocked by: {blocker}")).color(tokens.text));
+                    ui.label(RichText::new(format!("Approval blocked: {blocker}")).color(tokens.text));
                 });
             }
             let words = TextEdit::singleline(&mut self.approval)

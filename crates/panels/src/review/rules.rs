@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
 use review::flight_rule::{self, MissionRule, Outcome};
+use review::names;
+use review::record::{Act, Entry};
 use review::ruling::Proposal;
 use review::seat::{MAX_APPROVALS, MAX_SEATS, Seat};
 use review::{FlightRules, SuccessRate};
@@ -50,15 +52,28 @@ impl Rules {
         }
         let mut rules = self.draft.as_ref().map_or_else(|| present.clone(), |(_, draft)| draft.clone());
         people::indented(ui, |ui| {
+            for entry in record.conflicting_rules() {
+                conflict(ui, context, entry, commands);
+            }
             for proposal in &proposals {
                 agreement(ui, context, proposal, commands);
+            }
+            let unknown = record.unknown_rules();
+            if let Some(entry) = unknown {
+                let name = names::one_line(&entry.by);
+                let text = format!(
+                    "{name}, whose key is unknown, has set flight rules. Trust the key, or confirm these rules."
+                );
+                ui.label(RichText::new(text).color(context.tokens.warning));
             }
             fields(ui, context, &mut rules);
             ui.add_space(space::S);
             let problem = rules.problem();
             ui.horizontal_wrapped(|ui| {
-                let is_ready = rules != present && problem.is_none();
-                if ui.add_enabled(is_ready, Button::new("Apply rules")).clicked() {
+                let is_confirmation = rules == present && unknown.is_some();
+                let is_ready = (rules != present || is_confirmation) && problem.is_none();
+                let words = if is_confirmation { "Confirm rules" } else { "Apply rules" };
+                if ui.add_enabled(is_ready, Button::new(words)).clicked() {
                     let rules = Box::new(rules.clone());
                     commands.send(Command::Review(ReviewCommand::SetRules(rules)));
                 }
@@ -76,6 +91,25 @@ impl Rules {
         });
         self.draft = (rules != present).then_some((present, rules));
     }
+}
+
+/// One of several sets of flight rules in force, and the button that agrees to it.
+fn conflict(ui: &mut Ui, context: &Context<'_>, entry: &Entry, commands: &mut CommandSender) {
+    let Act::Rules { rules } = &entry.act else { return };
+    let text = format!(
+        "In force at the same time, set by {}: required approvals {}.",
+        people::who(entry),
+        rules.board_in_words()
+    );
+    ui.label(RichText::new(text).color(context.tokens.warning));
+    let ring = context.state.keys.ring();
+    let has_key = ring.own_named(&context.state.settings.reviewer).is_some();
+    let agree =
+        ui.add_enabled(has_key, Button::new("Agree")).on_hover_text("Sign these flight rules and this board");
+    if agree.accessible_name(format!("Agree to the rules of {}", entry.by)).clicked() {
+        commands.send(Command::Review(ReviewCommand::SetRules(Box::new(rules.clone()))));
+    }
+    ui.add_space(space::S);
 }
 
 /// A change that weakens the board, and the button that agrees to it.
@@ -237,11 +271,11 @@ fn board(ui: &mut Ui, context: &Context<'_>, board: &mut Vec<Seat>) {
     }
 }
 
-/// Whose approvals count in a role: anybody's, or those of some whose keys are trusted.
+/// Whose approvals count in a role: anyone's, or those of some whose keys are trusted.
 fn people_of(ui: &mut Ui, context: &Context<'_>, seat: &mut Seat, number: usize) {
     let ring = context.state.keys.ring();
     let text = match seat.people.len() {
-        0 => "Anybody".to_owned(),
+        0 => "Anyone".to_owned(),
         1 => "1 person".to_owned(),
         count => format!("{count} people"),
     };
@@ -253,7 +287,7 @@ fn people_of(ui: &mut Ui, context: &Context<'_>, seat: &mut Seat, number: usize)
                 seat.people.extend(is_named.then(|| person.key.clone()));
             }
         }
-        if ui.button("Anybody").clicked() {
+        if ui.button("Anyone").clicked() {
             seat.people.clear();
         }
     });

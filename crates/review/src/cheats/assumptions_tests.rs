@@ -42,8 +42,7 @@ fn open_after(board: &Board, world: &str) -> Vec<String> {
 fn an_acknowledgment_of_a_branch_is_of_each_of_its_delays() {
     let world = "delay[5,20]; A=ON [1,1]; delay[1,2]; B=ON [5,5]; C=ON [5,5]";
     let board = acknowledged(world);
-    let text =
-        "assumes favorable timing of external events: `delay` leaves it [5,20], and `delay` leaves it [1,2]";
+    let text = "assumes favorable timing of external events: `delay` allows [5,20], and `delay` allows [1,2]";
     assert!(board.review.plan.iter().any(|line| line.text == text), "{:?}", board.review.plan);
     assert!(open_after(&board, world).is_empty());
     for changed in [

@@ -166,13 +166,12 @@ fn rules_that_are_dated_back_do_not_take_a_board() {
             assert!(!board.status_under(&of(of_ada())).is_approved(), "{by}");
             assert!(!board.status_under(&of(Seat::new("Reviewer", 2))).is_approved(), "{by}");
         }
-        // What one person sets after that ends nothing, and neither do all together.
+        // What one of the boards sets after that ends nothing.
         for (by, rules) in [
             ("Ada", of(Seat::new("Reviewer", 1))),
             ("Ada", of(of_ada())),
             ("Chair", of(Seat::new("Reviewer", 2))),
             ("Grace", of(Seat::new("Reviewer", 2))),
-            ("Ada", of(Seat::new("Reviewer", 2))),
         ] {
             board.say(by, Act::Rules { rules });
             let rules = board.record.rules().clone();
@@ -182,6 +181,16 @@ fn rules_that_are_dated_back_do_not_take_a_board() {
             }
             assert!(!board.status().is_approved(), "{by}");
         }
+        // Ada, who alone completes her board, agrees to that of the others.
+        board.say("Ada", Act::Rules { rules: of(Seat::new("Reviewer", 2)) });
+        assert!(board.record.conflicting_rules().is_empty());
+        assert_eq!(board.record.rules(), &of(Seat::new("Reviewer", 2)));
+        board.review.judge(&of(Seat::new("Reviewer", 2)), None);
+        assert!(!board.status().is_approved(), "the approvals before do not count");
+        for by in ["Ada", "Grace"] {
+            board.approve(by);
+        }
+        assert!(board.status().is_approved());
     }
 }
 
@@ -245,7 +254,63 @@ fn rules_that_only_unknown_keys_have_set_block_an_approval() {
     let standing = standing(&board.record, &Present::of_review(&board.review));
     assert!(!standing.status.is_approved());
     let told = standing.blockers().join(", ");
-    assert!(told.contains("the flight rules are set by Eve, whose key is unknown"), "{told}");
+    assert!(told.contains("Eve, whose key is unknown, has set flight rules"), "{told}");
+}
+
+/// Whoever lacks the key of the right person would otherwise see a weaker board.
+#[test]
+fn rules_with_an_unknown_key_wait_for_someone_who_has_seen_them() {
+    let mut board = approved();
+    let rules = board.record.rules().clone();
+    let apart = board.record.clone();
+    let three = FlightRules { board: vec![Seat::new("Reviewer", 3)], ..rules.clone() };
+    board.say_with("Eve", Act::Rules { rules: three }, &key("Eve"));
+    assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::InReview));
+    // An entry of someone who has not seen them confirms nothing.
+    let mut apart = apart;
+    let who = board.who("Grace");
+    apart.add(who, Act::Rules { rules: rules.clone() }, &key("Grace"));
+    board.record.merge(apart);
+    assert!(board.record.unknown_rules().is_some_and(|entry| entry.by == "Eve"));
+    // The rules in force, set again by someone who has, keep the approvals.
+    board.say("Chair", Act::Rules { rules: rules.clone() });
+    assert!(board.record.unknown_rules().is_none());
+    assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Approved));
+}
+
+#[test]
+fn agreeing_to_rules_twice_is_one_consent() {
+    let mut board = Board::new(LASTING);
+    let rules = board.record.rules().clone();
+    let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..rules.clone() };
+    let first = board.say("Ada", Act::Rules { rules: one.clone() });
+    let again = board.say("Ada", Act::Rules { rules: one.clone() });
+    // The same rules as in force, set again, end no proposal.
+    board.say("Chair", Act::Rules { rules: rules.clone() });
+    for digest in [&first, &again] {
+        let entry = board.record.entry(digest).expect("it is there");
+        let note = board.record.without_effect(entry);
+        assert_eq!(note.as_deref(), Some("weakens the board, with 1 of 2 approvals of the board in force"));
+    }
+    board.say("Grace", Act::Rules { rules: one.clone() });
+    assert_eq!(board.record.rules(), &one);
+    for digest in [&first, &again] {
+        let entry = board.record.entry(digest).expect("it is there");
+        assert_eq!(board.record.without_effect(entry), None);
+    }
+}
+
+#[test]
+fn a_board_that_was_never_in_force_completes_nothing() {
+    let mut board = Board::new(LASTING);
+    let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..board.record.rules().clone() };
+    board.say("Ada", Act::Rules { rules: one.clone() });
+    let mut review = board.review.clone();
+    review.judge(&one, None);
+    let subject = Subject::new(&review, &board.source, Goal::Default, 0, Value::Null, None);
+    let who = board.who("Ada");
+    board.record.approve(who, subject, String::new(), Vec::new(), &key("Ada"));
+    assert_eq!(board.status(), PlanStatus::InReview, "not lapsed");
 }
 
 #[test]

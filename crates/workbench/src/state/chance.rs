@@ -1,7 +1,9 @@
 //! How robust the plan is: many runs with chance, made by the core a few at a time.
 
+pub use review::record::MAX_RUNS;
 use std::sync::Arc;
 
+use exact::grouped;
 use link::{Request, Response, Update};
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
@@ -35,8 +37,6 @@ pub enum ChanceCommand {
 
 /// The runs that are made unless the user wants more or fewer.
 const USUAL_RUNS: u64 = 1000;
-/// More runs than this are for the command line, which shares them out.
-pub const MAX_RUNS: u64 = 100_000;
 
 impl Default for ChanceState {
     fn default() -> Self {
@@ -142,7 +142,7 @@ impl ChanceState {
             return None;
         }
         if self.tally.runs >= self.settings.runs {
-            window.done(format!("{} runs made", self.tally.runs));
+            window.done(format!("{} runs completed", grouped(self.tally.runs)));
         }
         Some(content)
     }

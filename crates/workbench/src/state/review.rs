@@ -23,7 +23,7 @@ use text_editing::Document;
 use crate::effect::{Aside, Effect};
 use crate::host::FileKind;
 use crate::state::AppState;
-use crate::state::chance::ChanceState;
+use crate::state::chance::{ChanceCommand, ChanceState};
 use crate::state::keys::{KeyChange, KeysState};
 use crate::state::part::Part;
 use crate::state::settings::{PlanSettings, Settings};
@@ -342,15 +342,25 @@ impl Reviewing<'_> {
             self.window.failed(format!("Invalid flight rules: {problem}"));
             return;
         }
-        if self.review.record.rules() == rules {
+        if self.review.record.rules() == rules && self.review.record.has_settled_rules() {
+            return;
+        }
+        let unknown = rules
+            .board
+            .iter()
+            .flat_map(|seat| &seat.people)
+            .find(|key| self.keys.ring().trust().name_of(key).is_none());
+        if let Some(unknown) = unknown {
+            let words = format!("Trust the key {} first: the board names it", unknown.fingerprint());
+            self.window.failed(words);
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
-        let mut proposals = self.review.record.proposals().into_iter();
-        let proposal = proposals.find(|proposal| proposal.rules == rules);
+        let proposals = self.review.record.proposals().into_iter();
+        let mut proposals = proposals.filter(|proposal| proposal.rules == rules);
         let key = self.keys.secret(&by.name).map(|(key, _)| key).ok();
         let has_signed = |proposal: Proposal<'_>| proposal.by.iter().any(|entry| entry.key == key);
-        if key.is_some() && proposal.is_some_and(has_signed) {
+        if key.is_some() && proposals.any(has_signed) {
             self.window.failed("You have already agreed to these flight rules".to_owned());
             return;
         }
@@ -370,7 +380,8 @@ impl Reviewing<'_> {
         match FlightRules::from_json(text) {
             Ok(rules) => {
                 self.set_rules(&rules);
-                if *self.review.record.rules() != rules {
+                let record = &self.review.record;
+                if *record.rules() != rules || !record.conflicting_rules().is_empty() {
                     return;
                 }
                 self.window.done(format!("Applied the flight rules of {name}"));
@@ -402,10 +413,7 @@ impl Reviewing<'_> {
                     parts.push(format!("Entries that don't count: {doubtful} (see History)"));
                 }
                 if left_out > 0 {
-                    parts.push(
-                        "Monte Carlo results without a valid approval were left out: run them again"
-                            .to_owned(),
-                    );
+                    parts.push("Monte Carlo results are not taken from a file: run them again".to_owned());
                 }
                 match parts.as_slice() {
                     [added] => self.window.done(added.clone()),
@@ -436,7 +444,15 @@ impl Reviewing<'_> {
         {
             self.review.record.mission.clone_from(&record.mission);
         }
-        let left_out = record.drop_unsigned_runs();
+        let mut runs = std::mem::take(&mut record.runs);
+        runs.retain(|runs| self.review.record.runs_of(&runs.content_hash).is_none_or(|known| known != runs));
+        let left_out = runs.len();
+        let of_present = runs.into_iter().find(|runs| self.review.hash() == Some(&runs.content_hash));
+        if let Some(runs) = of_present {
+            // They can be made again as they were made.
+            let settings = Box::new(runs.robustness().settings);
+            self.chance.apply(ChanceCommand::Set(settings), None, self.window);
+        }
         let count = self.review.record.merge(record);
         self.judge_record();
         self.learn_runs();

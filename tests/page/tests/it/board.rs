@@ -147,6 +147,8 @@ fn trust_keys(page: &Opened, keys: &str) -> Result<()> {
     page.tab.drop_file("board.keys.json", keys.as_bytes())?;
     page.wait_for("state.dialog === 'trust-keys'")?;
     page.wait_for("state.review.people.length === 0")?;
+    // Nothing can be trusted in the first second.
+    std::thread::sleep(std::time::Duration::from_millis(1500));
     page.tab.click_widget("button", "Trust")?;
     Ok(())
 }

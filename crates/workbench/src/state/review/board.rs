@@ -55,6 +55,9 @@ impl ReviewState {
             _ if objection == Some(Objection::NoDate) => {
                 Err("Enter the date on which the waiver lapses, such as 2026-01-31".to_owned())
             }
+            _ if objection == Some(Objection::NeedsWaiver) => {
+                Err("The plan violates a flight rule: waive the item, with a date".to_owned())
+            }
             _ if objection == Some(Objection::PastDate) => {
                 Err("Enter a date after the day on which you sign (UTC)".to_owned())
             }
