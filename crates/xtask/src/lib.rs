@@ -11,4 +11,5 @@ pub mod kill;
 pub mod process;
 pub mod server;
 pub mod site;
+pub mod texts;
 pub mod wasm_parts;

@@ -23,6 +23,7 @@ use xtask::{
     kill::{self, Deaths, Pace, Victim},
     process,
     site::{self, Flavour},
+    texts,
 };
 
 /// Builds, serves, tests, benchmarks and packs the page.
@@ -57,6 +58,8 @@ enum Task {
     },
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
+    /// Prints a template for translations: each text of the interface once, with its places, in gettext's format.
+    Texts,
 }
 
 /// How long each reader is attacked.
@@ -155,6 +158,10 @@ fn main() -> ExitCode {
         ),
         Task::Lines { root } => lines::print(&root.unwrap_or_else(process::root)),
         Task::Shot(options) => shot::run(&options),
+        Task::Texts => {
+            print!("{}", texts::template());
+            Ok(())
+        }
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,73 +1,21 @@
 //! The texts of the interface follow the writing guide: no banned words, and no label, tooltip or message that is too long.
 //!
-//! The texts are the string literals of the sources below [`FOLDERS`] and [`MORE_FOLDERS`], outside tests, attributes and
-//! reasons of panics; those of the page's scripts; the help of the command line, as its reference quotes it; and the
+//! The texts are those of the sources ([`xtask::texts`]), those of the page's scripts; the help of the command line, as its reference quotes it; and the
 //! documents. To check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with the
 //! reason.
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use regex::Regex;
 use xtask::process::root;
-
-/// Where user-visible texts are looked for, below the root.
-const FOLDERS: [&str; 8] = [
-    "crates/app/src",
-    "crates/display/src",
-    "crates/editor/src",
-    "crates/layout/src",
-    "crates/panels/src",
-    "crates/terrain_view/src",
-    "crates/theme/src",
-    "crates/workbench/src",
-];
-
-/// Where other texts are that users read: answers of the command line, diagnostics, reports, messages of the planner. These
-/// quote code in backticks, and have sentences such as “there is no plan”.
-const MORE_FOLDERS: [&str; 22] = [
-    "crates/cli/src",
-    "crates/controllability/src",
-    "crates/exact/src",
-    "crates/executive/src",
-    "crates/hca/src",
-    "crates/interchange/src",
-    "crates/kirk/src",
-    "crates/link/src",
-    "crates/mission/src",
-    "crates/motion/src",
-    "crates/page/src",
-    "crates/plant/src",
-    "crates/report/src",
-    "crates/review/src",
-    "crates/rmpl/src",
-    "crates/snapshot/src",
-    "crates/stn/src",
-    "crates/stnu/src",
-    "crates/terrain/src",
-    "crates/tpn/src",
-    "crates/verify/src",
-    "crates/worker/src",
-];
+use xtask::texts::{FOLDERS, MORE_FOLDERS, template, texts_in, texts_of};
 
 /// Documents whose prose is not checked, and why.
 const OTHER_DOCUMENTS: [(&str, &str); 2] = [
     ("key-sentences.md", "made of lessons and messages, which are checked in the sources"),
     ("specification.md", "definitions in the terms of mathematics"),
-];
-
-/// Parts of these folders that are not checked, and why.
-const EXCLUDED: [(&str, &str); 7] = [
-    ("crates/review/src/cheats.rs", "tests"),
-    ("crates/review/src/five_missions.rs", "tests"),
-    ("crates/review/src/mutations.rs", "tests"),
-    ("crates/rmpl/src/editor/completion", "templates of code"),
-    ("crates/tpn/src/families.rs", "names of generated missions, for benchmarks"),
-    ("crates/workbench/src/lesson", "messages to authors of lessons, in the terms of the lesson format"),
-    ("crates/workbench/src/manual.rs", "headings and addresses of the manual"),
 ];
 
 /// Patterns that no text of the interface contains, and what to write instead. They ignore case.
@@ -170,138 +118,6 @@ const LIMITS: [(&[&str], usize, &str); 3] = [
     (&["button", "small_button", "checkbox", "toggle_value", "menu_button"], 4, "label"),
 ];
 
-/// Calls whose texts no user sees.
-const HIDDEN: [&str; 10] = [
-    "expect",
-    "expect_err",
-    "panic",
-    "unreachable",
-    "assert",
-    "assert_eq",
-    "assert_ne",
-    "debug_assert",
-    "debug_assert_eq",
-    "debug_assert_ne",
-];
-
-/// Where a literal continues on the next line.
-static CONTINUATION: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"\\\n\s*").expect("a pattern"));
-static PLACEHOLDER: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"\{[^{}]*\}").expect("a pattern"));
-
-/// A string literal of a source.
-struct Text {
-    line: usize,
-    words: String,
-    /// The innermost function or macro that it is given to.
-    callee: String,
-}
-
-/// The string literals of a source, without those of tests, attributes and hidden calls.
-fn texts_of(source: &str) -> Vec<Text> {
-    let tokens: TokenStream = source.parse().expect("sources are Rust");
-    let mut found = Vec::new();
-    collect(tokens, "", &mut found);
-    found
-}
-
-fn collect(tokens: TokenStream, callee: &str, found: &mut Vec<Text>) {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let mut at = 0;
-    let mut is_test = false;
-    // The last name, which is the callee of the group that follows.
-    let mut name = String::new();
-    while let Some(token) = tokens.get(at) {
-        at += 1;
-        match token {
-            TokenTree::Punct(punct) if punct.as_char() == '#' => {
-                // Attributes of what they are in, as `//!` is one.
-                if matches!(tokens.get(at), Some(TokenTree::Punct(punct)) if punct.as_char() == '!') {
-                    at += 1;
-                }
-                if let Some(TokenTree::Group(group)) = tokens.get(at)
-                    && group.delimiter() == Delimiter::Bracket
-                {
-                    let attribute = group.stream().to_string();
-                    is_test |= attribute.replace(' ', "") == "cfg(test)";
-                    // The messages of errors are attributes.
-                    if attribute.starts_with("error") {
-                        collect(group.stream(), "error", found);
-                    }
-                    at += 1;
-                }
-            }
-            TokenTree::Punct(punct) => {
-                if punct.as_char() == ';' {
-                    is_test = false;
-                }
-                if !matches!(punct.as_char(), '!' | ':' | '.') {
-                    name.clear();
-                }
-            }
-            TokenTree::Ident(ident) => name = ident.to_string(),
-            TokenTree::Group(group) => {
-                let is_body = group.delimiter() == Delimiter::Brace;
-                let is_hidden = HIDDEN.contains(&name.as_str());
-                if !(is_hidden || is_test && is_body) {
-                    let is_call = group.delimiter() == Delimiter::Parenthesis && !name.is_empty();
-                    let inner = if is_call && name != "format" { name.as_str() } else { callee };
-                    collect(group.stream(), if is_body { "" } else { inner }, found);
-                }
-                is_test &= !is_body;
-                name.clear();
-            }
-            TokenTree::Literal(literal) => {
-                let line = literal.span().start().line;
-                if let Some(words) = string(&literal.to_string()) {
-                    found.push(Text { line, words, callee: callee.to_owned() });
-                }
-            }
-        }
-    }
-}
-
-/// Returns what a literal says, if it is a string: without quotes and line breaks, each placeholder as `{}`.
-fn string(literal: &str) -> Option<String> {
-    let literal = literal.trim_start_matches('r').trim_matches('#');
-    let inner = literal.strip_prefix('"')?.strip_suffix('"')?;
-    let joined = CONTINUATION.replace_all(inner, "");
-    let unquoted = joined.replace("\\\"", "\"").replace("\\n", " ").replace("\\u{a0}", " ");
-    Some(PLACEHOLDER.replace_all(&unquoted, "{}").into_owned())
-}
-
-/// The sources below a folder, with their paths below the root.
-fn sources_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            sources_below(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") && !path.ends_with("tests.rs") {
-            found.push(path);
-        }
-    }
-}
-
-/// Every text below these folders, with its file.
-fn texts_in(folders: &[&str]) -> Vec<(String, Text)> {
-    let root = root();
-    let mut paths = Vec::new();
-    for folder in folders {
-        sources_below(&root.join(folder), &mut paths);
-    }
-    paths.sort();
-    let mut found = Vec::new();
-    for path in paths {
-        let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
-        let is_test = name.contains("/tests/") || name.ends_with("_tests.rs");
-        if is_test || EXCLUDED.iter().any(|(part, _)| name.starts_with(part)) {
-            continue;
-        }
-        let source = fs::read_to_string(&path).expect("sources are UTF-8");
-        found.extend(texts_of(&source).into_iter().map(|text| (name.clone(), text)));
-    }
-    found
-}
-
 fn patterns(of: &[(&str, &'static str)]) -> Vec<(Regex, &'static str)> {
     of.iter()
         .map(|(pattern, instead)| (Regex::new(&format!("(?i){pattern}")).expect("a pattern"), *instead))
@@ -332,6 +148,19 @@ fn texts_are_found_with_their_callees() {
         ("", "Last"),
     ];
     assert_eq!(found, expected.map(|(callee, words)| (callee.to_owned(), words.to_owned())));
+}
+
+/// A file that msgfmt can read: each text once, with its places and an empty translation.
+#[test]
+fn the_template_of_a_translation_has_each_text_once() {
+    let template = template();
+    let ids: Vec<&str> = template.lines().filter(|line| line.starts_with("msgid ")).collect();
+    let different: BTreeSet<&str> = ids.iter().copied().collect();
+    assert!(ids.len() > 1_500 && different.len() == ids.len(), "{} of {}", different.len(), ids.len());
+    assert!(template.contains("\nmsgid \"Maximize or restore panel\"\nmsgstr \"\"\n"));
+    assert!(
+        template.lines().all(|line| line.is_empty() || line.starts_with("#: ") || line.starts_with("msg"))
+    );
 }
 
 #[test]
