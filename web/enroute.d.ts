@@ -1,6 +1,6 @@
 // The page's interface for host pages and tests. Made from the types of the crate `workbench`.
 
-/** A time: a number where it is exact in decimal, otherwise `"p/q"`; `"inf"` is without bound. */
+/** A time: a number if it is exact in decimal, otherwise `"p/q"`; `"inf"` is without bound. */
 export type Time = number | string;
 
 /** A plan; windows are earliest and latest times by event. */
@@ -16,9 +16,9 @@ export interface Plan {
   windows: Record<string, [Time, Time]>;
   /** Uses of resources that planning put in order; with `resources`. */
   uses_ordered?: [string, string][];
-  /** How far each resource is used over all schedules, where the mission has any. */
+  /** The use of each resource over all schedules, if the mission has any. */
   resources?: Record<string, ResourceLevels>;
-  /** What the plan is worth, where the mission counts anything. */
+  /** The cost and the reward of the plan, if the mission counts them. */
   cost?: Time;
   reward?: Time;
   /** The earliest time of the scenario's end. */
@@ -55,16 +55,16 @@ export interface Traverse {
 /** The `code` of an error that the page throws: a stable name for programs. */
 export type RefusalCode = "not-ready" | "stopped" | "no-graphics" | "unknown-mission" | "unknown-command" | "bad-arguments" | "unavailable";
 
-/** Everything the page shows. What was worked out belongs to `shownRevision`, which is `revision` once `status` is not `working`. */
+/** Everything the page shows. All results belong to `shownRevision`, which is `revision` once `status` is not `working`. */
 export type State = {
   /** Counts the edits of the text. */
   revision: number;
-  /** The revision that was last answered. */
+  /** The last revision for which there is an answer. */
   answeredRevision: number | null;
   /** The revision of what is shown. */
   shownRevision: number | null;
   status: "working" | "broken" | "empty" | "program" | "plan" | "no-plan" | "undecided";
-  /** Whether what is shown is of an older text. */
+  /** Whether the page shows an answer to an older text. */
   isStale: boolean;
   /** The name of the open mission. */
   mission: string;
@@ -79,9 +79,9 @@ export type State = {
   /** How many of each the network has; `null` while the text does not compile. */
   tpn: NetworkSize | null;
   plan: Plan | null;
-  /** What no plan is better than, where the plan is not known to be optimal: in the first goal that is not settled. */
+  /** No plan is better than this value in the first undecided goal, if the plan is not known to be optimal. */
   bound: Time | null;
-  /** What the independent checker says of the plan. */
+  /** The verdict of the independent checker on the plan. */
   verdict: Verdict | null;
   /** Why there is no plan. */
   failure: Failure | null;
@@ -89,7 +89,7 @@ export type State = {
   lesson: Lessons;
   manual: Manual;
   review: Review;
-  /** What the mission is compared with. */
+  /** The comparison of the mission with another one. */
   compare: Comparison | null;
   search: Search;
   /** The run of a control program; `null` for a mission. */
@@ -103,13 +103,13 @@ export type State = {
   /** The range of times that is selected on the timeline. */
   timeRange: [number, number] | null;
   pinned: Pinned | null;
-  /** The run that is watched in the Execute workspace. */
+  /** The run in the Execute workspace. */
   execution: Execution | null;
-  /** What many runs with chance came to; `null` until runs were made. */
+  /** The results of Monte Carlo runs; `null` before the first run. */
   robustness: Robustness | null;
-  /** How the passed lines of the review were tried; `null` until some were. */
+  /** The search for counterexamples of the passed items of the review; `null` before the first one. */
   contradiction: Contradiction | null;
-  /** Which flight rules hold in every plan; `null` until some were proven. */
+  /** Which flight rules hold in every plan; `null` before the first proof. */
   ruleProofs: RuleProofs | null;
   selection: { kind: string; name: string | null; id: unknown } | null;
   caret: Caret;
@@ -125,7 +125,7 @@ export type State = {
   timings: Timings;
 };
 
-/** Something to tell the author about a place of the text. */
+/** An error, a warning or a note about a place of the text. */
 export type Diagnostic = {
   code: string;
   severity: "error" | "warning" | "note";
@@ -144,7 +144,7 @@ export type Span = {
   column: number;
 };
 
-/** Where the caret is and where its selection began, in bytes. */
+/** Where the cursor is (`head`) and where its selection starts (`anchor`), in bytes. */
 export type Caret = {
   anchor: number;
   head: number;
@@ -158,7 +158,7 @@ export type NetworkSize = {
   occurrences: number;
 };
 
-/** What the independent checker says of a plan. */
+/** The verdict of the independent checker on a plan. */
 export type Verdict = {
   valid: boolean;
   violations: Array<string>;
@@ -180,7 +180,7 @@ export type Reason = {
   message: string;
 };
 
-/** What the mission is compared with. */
+/** The comparison of the mission with another one. */
 export type Comparison = {
   with: string;
   planned: boolean;
@@ -195,7 +195,7 @@ export type Timings = {
   total: number;
   /** The app's own code in the last frame. */
   frame: number;
-  /** All that the frame before took on the page's thread. */
+  /** The whole time of the previous frame on the page's thread. */
   frameWithShell: number | null;
   /** The app's code in the frame that first shows the answer to the present text; `null` until then. */
   answerFrame: number | null;
@@ -203,19 +203,19 @@ export type Timings = {
   shownAt: number | null;
 };
 
-/** The recorded search and the step that is looked at. While one is, all panels show that step instead of the plan. */
+/** The recorded search and its current step. If there is a current step, all panels show it instead of the plan. */
 export type Search = {
-  /** The step that is shown, from 1; 0 while the plan is shown. */
+  /** The current step, from 1; 0 while the panels show the plan. */
   step: number;
   /** How many steps are recorded; 0 if none are. */
   steps: number;
   isPlaying: boolean;
-  /** Whether stepping and playing pass over what only prepares a key step. */
+  /** Whether stepping and playing skip steps that only prepare a key step. */
   onlyKeySteps: boolean;
   stepsPerSecond: number;
   /** Where running and playing stop. */
   breakpoints: Record<"decision" | "failure" | "threat" | "solution", boolean>;
-  /** What the search knew at the step: its choices, links, orderings and windows in the form of a plan. */
+  /** The knowledge of the search at the step: its choices, links, orderings and windows in the form of a plan. */
   known: (Plan & { event: string | null; text: string | null; state: number; cycle: string[] }) | null;
   /** Both searches side by side, if they are compared. */
   compare: SearchComparison | null;
@@ -229,7 +229,7 @@ export type SearchComparison = {
   searches: Array<SearchFigures>;
 };
 
-/** How much work a search was, and where it is looked at. */
+/** The amount of work of a search, and its current step. */
 export type SearchFigures = {
   search: "chronological" | "conflict-directed";
   status: string;
@@ -253,7 +253,7 @@ export type Vehicle = {
   time: number;
 };
 
-/** What is done on the terrain. */
+/** The tool on the terrain, and what the terrain shows. */
 export type Terrain = {
   tool: "look" | "measure" | "location" | "circle" | "appear" | "polygon" | "wall" | "vehicle";
   /** The places that the tool has so far, in meters east and north. */
@@ -267,9 +267,9 @@ export type Terrain = {
   growth: PathGrowth | null;
 };
 
-/** The search for a path that is looked at sample by sample. */
+/** The search for a path, sample by sample. */
 export type PathGrowth = {
-  /** Whose searches are shown. */
+  /** The planner whose searches are shown. */
   planner: string;
   leg: number;
   samples: number;
@@ -283,7 +283,7 @@ export type PathGrowth = {
   searches: Array<PathSearch>;
 };
 
-/** A search for a path by the sample that is looked at. */
+/** A search for a path up to the current sample. */
 export type PathSearch = {
   planner: string;
   samples: number;
@@ -303,7 +303,7 @@ export type Execution = {
   status: "under-way" | "finished" | "stopped";
   /** How the whole run ends. */
   ending: "finished" | "stopped";
-  /** Whether a newer run is being worked out. */
+  /** Whether Enroute is simulating a newer run. */
   isWorking: boolean;
   time: number;
   replans: number;
@@ -322,21 +322,21 @@ export type Deadline = {
   time: Time;
 };
 
-/** What many runs with chance came to. */
+/** The results of Monte Carlo runs. */
 export type Robustness = {
   runs: number;
   isRunning: boolean;
   probability: number;
-  /** The 95 % confidence interval. */
+  /** The 95% confidence interval. */
   interval: [number, number];
   /** The events that broke plans, the worst first. */
   worst: Array<string>;
 };
 
-/** How the passed lines of the present review were tried. */
+/** The search for counterexamples of the passed items of the present review. */
 export type Contradiction = {
   isRunning: boolean;
-  /** How many schedules and runs have been tried, and how many are to be; `null` unless some are being tried. */
+  /** How many schedules and runs have been tried, of how many; `null` unless a search is running. */
   progress: [number, number] | null;
   items: Array<TriedItem>;
 };
@@ -344,26 +344,26 @@ export type Contradiction = {
 /** Which flight rules hold in every plan of the mission. */
 export type RuleProofs = {
   isRunning: boolean;
-  /** How many rules are answered, and how many are to be; `null` unless some are being proven. */
+  /** How many rules have a verdict, of how many; `null` unless a proof is running. */
   progress: [number, number] | null;
   rules: Array<ProvenRule>;
 };
 
-/** What was found of one rule. */
+/** The result for one rule. */
 export type ProvenRule = {
-  /** What it says. */
+  /** The text of the rule. */
   rule: string;
   verdict: "holds" | "never-applies" | "broken" | "unsure" | "open" | "unreadable" | "no-plan";
-  /** In one sentence. */
+  /** The result, in one sentence. */
   outcome: string;
 };
 
-/** How one line was tried. */
+/** The search for a counterexample of one item. */
 export type TriedItem = {
-  /** The line. */
+  /** The item. */
   text: string;
   status: "survived" | "contradicted" | "not-tried";
-  /** How it came out, in one sentence. */
+  /** The result, in one sentence. */
   outcome: string;
 };
 
@@ -371,13 +371,13 @@ export type TriedItem = {
 export type Pinned = {
   events: { [key in string]: number };
   windows: Record<string, [Time, Time]>;
-  /** How the run against the environment stands, if the environment chooses something in this plan. */
+  /** The run against the environment, if the environment chooses something in this plan. */
   run: NatureRun | null;
 };
 
 /** A run in which the environment's durations are chosen one by one. */
 export type NatureRun = {
-  /** The present. */
+  /** The present time. */
   now: number;
   /** What happened, in the order of time. */
   acts: Array<Act>;
@@ -389,12 +389,12 @@ export type NatureRun = {
   next: Act | null;
 };
 
-/** What someone does. */
+/** An act of the executive or of the environment. */
 export type Act = {
   time: number;
-  /** What happens at that instant. */
+  /** The events at that instant. */
   events: Array<string>;
-  /** The duration that the environment ends there; otherwise the executive acts. */
+  /** The duration that the environment ends there; `null` if the executive acts. */
   nature: string | null;
 };
 
@@ -403,7 +403,7 @@ export type Waiting = {
   event: string;
   /** The duration whose end it waits for. */
   nature: string;
-  /** It waits no longer than until then. */
+  /** The time until which it waits at most. */
   until: number;
 };
 
@@ -411,13 +411,13 @@ export type Waiting = {
 export type Library = {
   /** The id of the open mission; `null` for an original that no one has edited. */
   open: string | null;
-  /** Those changed last first, without the deleted ones. */
+  /** The missions without the deleted ones, the last changed one first. */
   missions: Array<KeptMission>;
-  /** How many deleted missions can be brought back. */
+  /** How many deleted missions can be restored. */
   deleted: number;
-  /** How many things are kept that cannot be read. */
+  /** How many saved items are unreadable. */
   unreadable: number;
-  /** Whether missions are kept beyond the end of this run. */
+  /** Whether missions are saved beyond the end of this run. */
   keeping: "opening" | "kept" | "until-closed" | "latest-only" | "nothing";
 };
 
@@ -442,14 +442,14 @@ export type KeptMission = {
 export type Lessons = {
   /** The names of the course's lessons, in order. */
   course: Array<string>;
-  /** Stops whose questions were answered rightly: `negative-cycle/2`. */
+  /** Steps whose questions the user answered correctly: `negative-cycle/2`. */
   learned: Array<string>;
-  /** Whether the panels stand as the lesson wants them. */
+  /** Whether the panels are arranged for the lesson. */
   beside: boolean;
   open: OpenLesson | null;
 };
 
-/** The lesson that is open, at its stop. */
+/** The open lesson, at its current step. */
 export type OpenLesson = {
   name: string;
   title: string;
@@ -457,29 +457,29 @@ export type OpenLesson = {
   stop: number;
   stops: number;
   stopTitle: string;
-  /** Whether what the stop shows is still worked out. */
+  /** Whether Enroute is still calculating what the step shows. */
   isDue: boolean;
-  /** What the stop says, without its looks. */
+  /** The text of the step, without its format. */
   prose: string;
   question: Question | null;
-  /** What is wrong in the lesson's file, by line. */
+  /** The errors in the lesson's file, by line. */
   errors: Array<LessonMistake>;
 };
 
-/** What a stop asks. */
+/** The question of a step. */
 export type Question = {
   kind: "choice" | "number" | "word" | "task" | "prediction";
   text: string;
   choices: Array<string>;
-  /** What was answered last; of a prediction, the last one that has been shown. */
+  /** The last answer; of a prediction, the last one whose result has been shown. */
   given: string | null;
-  /** Whether that was right; of a task, whether it is done. */
+  /** Whether that answer is right; of a task, whether it is done. */
   isRight: boolean | null;
-  /** What was predicted at this stop, if that is asked for. */
+  /** The predictions at this step, if the step asks for them. */
   predictions: PredictionCounts | null;
 };
 
-/** How often someone predicted what came. */
+/** The number of predictions, and of right ones. */
 export type PredictionCounts = {
   made: number;
   right: number;
@@ -487,55 +487,55 @@ export type PredictionCounts = {
   isOver: boolean;
 };
 
-/** Something wrong in a lesson. */
+/** An error in a lesson. */
 export type LessonMistake = {
   /** From 1. */
   line: number;
   message: string;
 };
 
-/** The manual as it is looked at. */
+/** The open page of the manual, and its search. */
 export type Manual = {
   /** `null` while its contents are shown. */
   page: string | null;
   section: string;
   query: string;
-  /** Where what is looked for stands: `page#section`. */
+  /** The sections that contain the query: `page#section`. */
   found: Array<string>;
 };
 
 /** The review of the mission. */
 export type Review = {
-  /** The hash of what was reviewed; `null` before the first review of this mission. */
+  /** The hash of the reviewed text, map and seed; `null` before the first review of this mission. */
   hash: string | null;
   /** The hash of the present text, map and seed. */
   currentHash: string | null;
   /** The hash of the reviewed plan; empty without one. */
   planHash: string | null;
-  /** Whether the two differ. */
+  /** Whether the content, the plan or the search has changed since. */
   stale: boolean;
   running: boolean;
   status: "information" | "passed" | "attention" | "failed" | null;
   counts: ReviewCounts | null;
-  /** What the mission is held against: see section 16 of the specification. */
+  /** The flight rules: see section 16 of the specification. */
   rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number; people: string[] }[] };
   items: Array<ReviewItem>;
-  /** How the plan stands with its board. */
+  /** The status of the plan with its board. */
   planStatus: "draft" | "in-review" | "approved" | "approved-with-comments" | "lapsed" | null;
-  /** Who has to approve, and who has. */
+  /** The required approvals, and who has given them. */
   board: Array<BoardSeat>;
-  /** What stands in the way of any approval. */
+  /** What blocks any approval. */
   blockers: Array<string>;
-  /** The latest approval that has not been taken back. */
+  /** The latest approval that has not been withdrawn. */
   signed: SignOff | null;
   comments: Array<ReviewComment>;
-  /** Everything that was done, in order. */
+  /** All acts, in order. */
   history: Array<HistoryEntry>;
   /** The digests of the last entries of the history. */
   heads: Array<string>;
-  /** Why a review that was kept for this mission is kept aside and not used, if one is. */
+  /** Why a saved review of this mission was set aside and is not used, if there is one. */
   aside: string | null;
-  /** Why the history is not kept beyond this visit, if it is not. */
+  /** Why the history is not saved beyond this visit; `null` if it is saved. */
   unkept: string | null;
   /** The waivers that count, oldest first. */
   waivers: Array<ReviewWaiver>;
@@ -543,42 +543,42 @@ export type Review = {
   people: Array<ReviewPerson>;
 };
 
-/** How many lines of a review stand how. */
+/** How many items of a review have each status. */
 export type ReviewCounts = {
   passed: number;
   attention: number;
   failed: number;
-  /** Lines that say how things are, with nothing to hold them against. */
+  /** Items without a criterion. */
   information: number;
 };
 
-/** A line of a review. */
+/** An item of a review. */
 export type ReviewItem = {
   section: string;
   status: "information" | "passed" | "attention" | "failed";
   text: string;
-  /** What it is held against, and where that comes from. */
+  /** Its criterion, with the source of the criterion. */
   criterion: string | null;
   /** The line of its place in the text, from 1. */
   line: number | null;
-  /** What it is about, by the names of all output. */
+  /** Its subjects, by their names in all output. */
   names: Array<string>;
-  /** Who acknowledged it as it is, and why it may be so. */
+  /** Who acknowledged it, and the reason. */
   acknowledged: { by: string; text: string } | null;
 };
 
 /** A role of the board. */
 export type BoardSeat = {
   role: string;
-  /** How many people have to approve. */
+  /** The required number of approvals. */
   wanted: number;
   /** Who has approved the present plan. */
   given: Array<string>;
 };
 
-/** What someone wrote. */
+/** A comment. */
 export type ReviewComment = {
-  /** What `review.resolve`, `review.reopen` and `review.withdraw` take. */
+  /** The argument of `review.resolve`, `review.reopen` and `review.withdraw`. */
   id: string;
   author: string;
   role: string;
@@ -587,11 +587,11 @@ export type ReviewComment = {
   about: string | null;
   text: string;
   content_hash: string;
-  /** Whether it is neither resolved nor taken back. */
+  /** Whether it is neither resolved nor withdrawn. */
   open: boolean;
 };
 
-/** Something that someone did. */
+/** An entry of the history. */
 export type HistoryEntry = {
   /** Its digest. */
   id: string;
@@ -599,9 +599,9 @@ export type HistoryEntry = {
   role: string;
   /** An ISO 8601 time in UTC. */
   time: string;
-  /** What was done, in words. */
+  /** The act, in words. */
   act: string;
-  /** What was said with it. */
+  /** The words of the entry. */
   text: string;
   /** The entry that it is about. */
   of: string | null;
@@ -609,12 +609,12 @@ export type HistoryEntry = {
   hash: string;
   /** The plan that it is about; empty if none was known. */
   planHash: string;
-  /** Whether someone took it back. */
+  /** Whether someone withdrew it. */
   withdrawn: boolean;
   /** The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions. */
   key: string | null;
   signature: "valid" | "unknown" | "broken" | "unsigned";
-  /** Why it does not count in spite of its signature, or what else is odd about it. */
+  /** Why it does not count in spite of its signature, or another problem with it. */
   problem: string | null;
   /** Whether it counts. */
   counts: boolean;
@@ -622,11 +622,11 @@ export type HistoryEntry = {
   withoutEffect: string | null;
 };
 
-/** An item that may be as it is until some day. */
+/** A waiver of an item until some day. */
 export type ReviewWaiver = {
   /** The entry of the history. */
   id: string;
-  /** What the item says. */
+  /** The text of the item. */
   item: string;
   reason: string;
   by: string;
@@ -644,7 +644,7 @@ export type ReviewPerson = {
   own: boolean;
 };
 
-/** Someone has approved a plan. */
+/** An approval of a plan. */
 export type SignOff = {
   name: string;
   /** An ISO 8601 time in UTC. */
@@ -652,18 +652,18 @@ export type SignOff = {
   role: string;
   /** The content that was approved. */
   hash: string;
-  /** Whether the present content, plan or rules are others. */
+  /** Whether the content, the plan or the rules have changed since. */
   stale: boolean;
 };
 
-/** How a control program stands at the step that is looked at. */
+/** A run of a control program at the current step. */
 export type ProgramRun = {
-  /** The steps taken before this moment. */
+  /** The number of steps before this moment. */
   step: number;
-  /** All steps that were taken. */
+  /** The number of all steps of the run. */
   steps: number;
   locations: number;
-  /** The labels of what is marked. */
+  /** The labels of the marked locations. */
   marked: Array<string> | null;
   /** The goals that the marked locations assert. */
   goals: Array<string> | null;
@@ -672,9 +672,9 @@ export type ProgramRun = {
   canStep: boolean;
   isPlaying: boolean;
   trouble: string | null;
-  /** How likely the program is to reach its end; `null` until many runs were made of the present text. */
+  /** How likely the program is to reach its end; `null` before Monte Carlo runs of the present text. */
   chance: ProgramChance | null;
-  /** What holds in all runs; `null` until it was asked of the present text. */
+  /** Which properties hold in all runs; `null` before a proof for the present text. */
   proof: ProgramProof | null;
   plant: PlantState | null;
 };
@@ -690,17 +690,17 @@ export type ProgramChance = {
   isRunning: boolean;
   reached: number;
   probability: number;
-  /** The 95 % confidence interval of the probability. */
+  /** The 95% confidence interval of the probability. */
   interval: [number, number];
   meanSteps: number;
 };
 
-/** What holds in all runs of a program, or why nothing can be proven. */
+/** Which properties hold in all runs of a program, or why Enroute can prove none. */
 export type ProgramProof = {
   isRunning: boolean;
   states: number;
   trouble: string | null;
-  /** Why not all states were explored, if that is so. */
+  /** Why some states were not explored; `null` if all were. */
   stopped: string | null;
   verdicts: Array<ProgramVerdict>;
 };
@@ -708,13 +708,13 @@ export type ProgramProof = {
 /** Whether a property holds in all runs. */
 export type ProgramVerdict = {
   property: string;
-  /** `holds`, `broken`, or `open` where no run breaks it but not all were looked at. */
+  /** `holds`, `broken`, or `open` if no examined run breaks it but some runs were not examined. */
   verdict: string;
-  /** In the run that breaks it, the steps in which a component does not do what is nominal, such as `3: EngineA=Failed`. */
+  /** In the run that breaks it, the steps in which a component does not behave nominally, such as `3: EngineA=Failed`. */
   faults: Array<string>;
 };
 
-/** What is believed and true of a plant; modes and values by component and variable. */
+/** The belief about a plant, and its true state; modes and values by component and variable. */
 export type PlantState = {
   /** Most likely first, at most 64 of them. */
   belief: Array<Believed>;
@@ -757,9 +757,9 @@ export type Chosen = {
   alternative: number;
   /** The expected sum of rewards of each alternative, as decimals or fractions. */
   expected: Array<string>;
-  /** Over how many steps. */
+  /** The number of steps that the sum covers. */
   horizon: number;
-  /** Whether the program asks for more steps than could be followed. */
+  /** Whether the program asks for more steps than the calculation could cover. */
   isShortened: boolean;
 };
 
@@ -767,7 +767,7 @@ export type Chosen = {
 export type Asked = {
   condition: string;
   probability: StateProbability;
-  /** Whether it is as probable as the program demands. */
+  /** Whether its probability reaches the threshold of the program. */
   isKnown: boolean;
 };
 
@@ -798,17 +798,17 @@ export interface Widget {
 export interface Enroute {
   /** Fulfilled when the front end is drawn and can be driven. */
   readonly ready: Promise<void>;
-  /** Opens an example mission. */
+  /** Open an example mission. */
   open(name: string): void;
-  /** Replaces the whole text, as one undoable edit. */
+  /** Replace the whole text, as one undoable edit. */
   setSource(text: string): void;
-  /** The text as it stands. */
+  /** The current text. */
   source(): string;
-  /** Runs a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
+  /** Run a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
   dispatch(command: string, args?: object): void;
   /** The state as plain data. */
   state(): State;
-  /** Calls back with the state whenever it has changed, after the frame that shows it. Call the returned function to unsubscribe. */
+  /** Call back with the state after each change, after the frame that shows it. Call the returned function to unsubscribe. */
   subscribe(callback: (state: State) => void): () => void;
   /** The widgets of a role whose name or text contains `label`. */
   widgets(role: string, label?: string): Widget[];

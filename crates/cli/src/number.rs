@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use exact::grouped;
+
 /// A reader of whole numbers in `range`, for an option.
 pub fn number_in<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
 where
@@ -24,14 +26,6 @@ pub fn seed(text: &str) -> Result<u64, String> {
 /// A number of at least 1.
 pub fn positive_number(text: &str) -> Result<u32, String> {
     number_in(1..=u32::MAX)(text)
-}
-
-/// A number with its digits in groups of three: `10,000`.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
-    groups.join(",")
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ mod serial;
 mod time;
 
 pub use bound::{Bound, BoundError};
-pub use counted::counted;
+pub use counted::{counted, grouped};
 pub use rational::Rational;
 pub use read::ReadError;
 pub use scale::Scale;

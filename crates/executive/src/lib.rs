@@ -23,7 +23,7 @@ pub use activity_execution::{
     ActivityExecution, ActivityExecutor, AsPlanned, Contact, Ends, PlantReading, Revision,
 };
 pub use facts::Facts;
-pub use log::{Ending, Entry, Happening};
+pub use log::{Ending, Entry, Happening, NEEDED_UNTIL};
 pub use pinned::PinnedPlan;
 pub use plan_network::{PlanError, PlanNetwork};
 pub use progress::{Observations, Progress, Waiting, progress};

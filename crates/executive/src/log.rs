@@ -63,17 +63,25 @@ pub enum Happening {
 }
 
 impl Happening {
-    /// A change of the world's state for people: `ARM=OUT by Deploy#1`; `None` for anything else.
+    /// A change of the world's state for people: `Deploy#1 changes ARM`, then `ARM=OUT by Deploy#1`; `None` for anything
+    /// else.
     pub fn state_words(&self) -> Option<String> {
-        let (what, by) = match self {
-            Self::State { variable, value: Some(value), by } => (format!("{variable}={value}"), by),
-            Self::State { variable, value: None, by } => (format!("{variable} is changing"), by),
-            Self::Level { resource, level, by } => (format!("{resource} is at {}", level.readable()), by),
-            _ => return None,
-        };
-        Some(format!("{what} by {}", by.as_deref().unwrap_or("the world")))
+        let who = |by: &Option<SmolStr>| by.clone().unwrap_or_else(|| "the world".into());
+        match self {
+            Self::State { variable, value: Some(value), by } => {
+                Some(format!("{variable}={value} by {}", who(by)))
+            }
+            Self::State { variable, value: None, by } => Some(format!("{} changes {variable}", who(by))),
+            Self::Level { resource, level, by } => {
+                Some(format!("{resource}={} by {}", level.readable(), who(by)))
+            }
+            _ => None,
+        }
     }
 }
+
+/// What parts a violation's reason into what was withdrawn and until when the plan needs it.
+pub const NEEDED_UNTIL: &str = ", but the plan needs it until ";
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

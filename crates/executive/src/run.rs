@@ -25,7 +25,7 @@ use crate::adversary::Adversary;
 use crate::arrivals::Arrivals;
 use crate::dispatch::SettleError;
 use crate::facts::Facts;
-use crate::log::{Ending, Entry, Happening};
+use crate::log::{Ending, Entry, Happening, NEEDED_UNTIL};
 use crate::plan_network::PlanError;
 use crate::stage::{ExecutedPlan, Stage};
 use crate::world::World;
@@ -220,7 +220,7 @@ impl Run<'_> {
                     self.write(Happening::Finished);
                     return Ok(Ending::Finished);
                 }
-                self.write(Happening::Stopped { reason: "no event can happen anymore".to_owned() });
+                self.write(Happening::Stopped { reason: "no further event can happen".to_owned() });
                 return Ok(Ending::Stopped);
             };
             let now = self.now;
@@ -571,7 +571,7 @@ impl Run<'_> {
         });
         match withdrawn {
             Some(condition) => {
-                format!("{condition} was withdrawn at {time}, but the plan needs it until {earliest}")
+                format!("{condition} was withdrawn at {time}{NEEDED_UNTIL}{earliest}")
             }
             None => format!("{name} happened at {time}, before its earliest time {earliest}"),
         }
@@ -844,7 +844,8 @@ fn changed_choices(network: &Network, old: &Plan, new: &Plan) -> Vec<String> {
             match before {
                 Some(before) if before.alternative == choice.alternative => None,
                 Some(before) => {
-                    Some(format!("{decision} takes {taken} instead of {}", name(before.alternative)))
+                    let before = name(before.alternative);
+                    Some(format!("{decision} takes {taken} instead of {}", tpn::other_choice(&before)))
                 }
                 None => Some(format!("{decision} takes {taken}")),
             }

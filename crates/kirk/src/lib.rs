@@ -48,7 +48,7 @@ pub use trace::{
 };
 pub use trace_lines::trace_json_lines;
 pub use unplannable::Unplannable;
-pub use wording::contradiction;
+pub use wording::{after_choices, contradiction};
 
 use answer::answer;
 use model::Model;

@@ -84,6 +84,22 @@ fn counted<K>(all: &[Counted<K>]) -> usize {
     all.iter().map(|known| known.count).sum()
 }
 
+/// The start of a sentence about choices: `if D1 selects Charge() and D2 selects Drive(RIDGE), `; empty without choices.
+pub fn after_choices(network: &Network, choices: &[Choice]) -> String {
+    let choices: Vec<String> = choices
+        .iter()
+        .map(|choice| {
+            let name = network.alternative_name(choice.decision, choice.alternative);
+            format!("{} selects {name}", Network::decision_name(choice.decision))
+        })
+        .collect();
+    match choices.as_slice() {
+        [] => String::new(),
+        [only] => format!("if {only}, "),
+        [first @ .., last] => format!("if {} and {last}, ", first.join(", ")),
+    }
+}
+
 impl Told<'_> {
     /// One sentence: what contradicts what, and after which choices.
     pub(crate) fn message(&self) -> String {
@@ -96,12 +112,7 @@ impl Told<'_> {
             FailureKind::Resource => self.resource(),
             FailureKind::Controllability => self.controllability(),
         };
-        let choices: Vec<String> = self
-            .choices
-            .iter()
-            .map(|choice| format!("{}={}", Network::decision_name(choice.decision), choice.alternative))
-            .collect();
-        if choices.is_empty() { what } else { format!("with {}: {what}", choices.join(", ")) }
+        format!("{}{what}", after_choices(self.network, self.choices))
     }
 
     fn conditions(&self) -> Vec<LabelId> {

@@ -11,6 +11,7 @@ use workbench::Dialog;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::manual;
+use workbench::sentence;
 use workbench::state::editor::EditorCommand;
 use workbench::state::manual::ManualCommand;
 use workbench::state::no_plan::NO_PLAN;
@@ -144,7 +145,7 @@ fn show_details(
         }
         for fix in &problem.fixes {
             let label = without_backticks(&fix.label);
-            let button = ui.add_enabled(is_current, egui::Button::new(&label));
+            let button = ui.add_enabled(is_current, egui::Button::new(sentence(&label)));
             if button.accessible_name(format!("Fix: {label}")).clicked() {
                 commands.send(Command::Edit { edits: fix.edits.clone(), kind: EditKind::Single });
             }

@@ -34,7 +34,7 @@ pub(crate) fn fact(record: &Record, review: &Review) -> String {
         }
         _ => String::new(),
     };
-    format!("{}: {}{lapsed}", status_word(standing.status), shown(&standing.seats_in_words()))
+    format!("{}; approvals: {}{lapsed}", status_word(standing.status), shown(&standing.seats_in_words()))
 }
 
 /// Returns where the board signs on paper, with those who have approved this very plan.
@@ -63,7 +63,7 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
     let open = if blockers.is_empty() {
         String::new()
     } else {
-        format!("<p>Blocked by: {}.</p>\n", shown(&blockers.join(", ")))
+        format!("<p>Approval blocked: {}.</p>\n", shown(&blockers.join("; ")))
     };
     format!(
         "<div class=\"signatures\">\n<h2>Signatures</h2>\n{open}{rows}</div>\n{}",

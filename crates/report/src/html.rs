@@ -127,14 +127,14 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
     };
     let need = if attention == 1 { "needs" } else { "need" };
     format!(
-        "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}: {verdict}</dd>\n\
-         <dt>Checklist</dt><dd>{passed} passed, {attention} {need} attention, {failed} failed; {information} for information</dd>\n\
+        "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}</dd>\n\
+         <dt>Checklist</dt><dd>{passed} passed, {attention} {need} attention, {failed} failed; {information} informational</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
          <dt>Board</dt><dd>{}</dd>\n\
          <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n\
          <dt>Program</dt><dd>{}</dd>\n</dl>\n",
-        tables::status(review.status),
+        tables::word(review.status.name(), verdict),
         shown(&map),
         document.seed,
         board::fact(record, review),

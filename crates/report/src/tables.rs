@@ -84,7 +84,7 @@ pub(crate) fn status(status: Status) -> String {
 pub(crate) fn word(status: &str, word: &str) -> String {
     let sign = match status {
         "passed" => "✓",
-        "information" => "i",
+        "information" => "•",
         "attention" => "!",
         _ => "✕",
     };
@@ -444,7 +444,7 @@ mod tests {
     fn rows_that_go_on_with_another_stay_with_it_and_those_for_attention_come_first() {
         let group = |number: usize| {
             let of = if number == 900 { Status::Attention } else { Status::Information };
-            let first = vec![status(of), format!("D{number}"), "taken".to_owned()];
+            let first = vec![status(of), format!("D{number}"), "selected".to_owned()];
             let next = vec![String::new(), String::new(), format!("not needed in D{number}")];
             [first, next.clone(), next]
         };

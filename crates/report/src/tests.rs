@@ -374,7 +374,7 @@ fn subject(planned: &Planned) -> Subject {
 fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     let planned = planned(SCENARIO);
     let mut record = judged();
-    assert!(page_with(&planned, &record).contains("draft</span>: Reviewer 0 of 1"));
+    assert!(page_with(&planned, &record).contains("draft</span>; approvals: Reviewer 0 of 1"));
     let about = Some("Group-Wait#1".to_owned());
     let text = "Long wait.\nIs that <intended>?".to_owned();
     let to = Some(key("Ada & Co").public());
@@ -399,7 +399,7 @@ fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     let ada = who("Ada & Co", &planned.review);
     record.approve(ada, subject(&planned), "Mind the wind.".to_owned(), relied_on, &key("Ada & Co"));
     let page = page_with(&planned, &record);
-    assert!(page.contains("approved with comments</span>: Reviewer 1 of 1"), "{page}");
+    assert!(page.contains("approved with comments</span>; approvals: Reviewer 1 of 1"), "{page}");
     assert!(page.contains("Ada &amp; Co (Reviewer): As meant."), "who acknowledged stands in the summary");
     assert!(page.contains("resolved entry 1") && page.contains("Mind the wind."));
     assert!(page.contains("Text, plan, checklist, flight rules and Monte Carlo results are unchanged."));
@@ -422,9 +422,9 @@ fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs(
     let mut record = judged();
     let ada = who("Ada & Co", &before.review);
     record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada & Co"));
-    assert!(page_with(&before, &record).contains("approved</span>: Reviewer 1 of 1"));
+    assert!(page_with(&before, &record).contains("approved</span>; approvals: Reviewer 1 of 1"));
     let page = page_with(&after, &record);
-    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada &amp; Co approved 2026-01-02 03:04 UTC: the text, map, goal or seed has changed";
+    let lapsed = "approval lapsed</span>; approvals: Reviewer 0 of 1; Ada &amp; Co approved 2026-01-02 03:04 UTC: the text, map, goal or seed has changed";
     assert!(page.contains(lapsed), "{page}");
     assert!(page.contains("<del>− primitive A()[1,2]; scenario S[0,9] = { A() }</del>"));
     assert!(page.contains("<ins>+ primitive A()[3,4]; scenario S[0,9] = { A() }</ins>"));

@@ -62,7 +62,7 @@ impl Fate {
     /// In one sentence, for people.
     pub fn sentence(&self) -> String {
         match self {
-            Self::Taken => "taken".to_owned(),
+            Self::Taken => "selected".to_owned(),
             Self::Impossible { reason, .. } => format!("impossible: {reason}"),
             Self::AlsoPossible => {
                 "not needed: a plan with it also exists, but this one was found first".to_owned()
@@ -182,7 +182,7 @@ impl<'input> Examiner<'input> {
             reasons = vec![reasons.swap_remove(whole)];
         }
         // That it is about this alternative goes without saying.
-        let itself = format!("with {}={}: ", Network::decision_name(other.decision), other.alternative);
+        let itself = network.readable(&kirk::after_choices(network, &[other]));
         let more = reasons.len().saturating_sub(MAX_REASONS);
         reasons.truncate(MAX_REASONS);
         let (mut told, mut spans) = (Vec::new(), Vec::new());

@@ -88,6 +88,9 @@ impl<'a> Present<'a> {
                 Some("the flight rules have changed")
             }
             _ if !record.is_under_rules(approval) => Some("the flight rules were changed and set again"),
+            _ if subject.runs.is_some() && self.review.is_some_and(|review| review.runs != subject.runs) => {
+                Some("the Monte Carlo runs have changed")
+            }
             _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments have changed"),
             _ => None,
         }
@@ -199,7 +202,13 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     let lapsed = lapsed(record, &approvals, &accepted, present);
     let conflicting_rules = record.conflicting_rules();
     let unknown_rules = record.unknown_rules();
-    let is_blocked = !conflicting_rules.is_empty()
+    let missing = match present.review {
+        None => Some("the present content has not been reviewed"),
+        Some(review) if !review.is_planned() => Some("there is no plan"),
+        Some(_) => None,
+    };
+    let is_blocked = missing.is_some()
+        || !conflicting_rules.is_empty()
         || unknown_rules.is_some()
         || !open_comments.is_empty()
         || !unacknowledged.is_empty()
@@ -217,11 +226,6 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         PlanStatus::InReview
     } else {
         PlanStatus::Draft
-    };
-    let missing = match present.review {
-        None => Some("the present content has not been reviewed"),
-        Some(review) if !review.is_planned() => Some("there is no plan"),
-        Some(_) => None,
     };
     Standing {
         status,
@@ -274,19 +278,24 @@ fn lapsed<'a>(
         .find_map(|(entry, subject)| Some((entry, present.difference_by(record, accepted, entry, subject)?)))
 }
 
-/// The approvals that completed a board that was in force, oldest first.
+/// The approvals that hold a seat of a board that was in force and complete, oldest first.
 fn completed<'a>(
     record: &Record,
     approvals: &[(&'a Entry, &'a Subject)],
 ) -> impl DoubleEndedIterator<Item = (&'a Entry, &'a Subject)> {
     let key = |entry: &'a Entry| (&entry.content_hash, &entry.plan_hash, &entry.rules);
     let mut same: BTreeMap<_, (Vec<&'a Entry>, &'a Subject)> = BTreeMap::new();
-    let was_in_force = |entry: &Entry| record.ruling().was_in_force(&entry.rules);
-    for &(entry, subject) in approvals.iter().filter(|(entry, _)| was_in_force(entry)) {
+    for &(entry, subject) in approvals.iter().filter(|(entry, _)| record.was_under_rules(entry)) {
         same.entry(key(entry)).or_insert_with(|| (Vec::new(), subject)).0.push(entry);
     }
-    same.retain(|_, (entries, subject)| is_complete(&seats(&subject.rules.board, entries)));
-    approvals.iter().copied().filter(move |(entry, _)| same.contains_key(&key(entry)))
+    let mut holding: BTreeSet<&str> = BTreeSet::new();
+    for (entries, subject) in same.values() {
+        let seats = seats(&subject.rules.board, entries);
+        if is_complete(&seats) {
+            holding.extend(seats.iter().flat_map(|seat| &seat.given).map(|entry| entry.digest()));
+        }
+    }
+    approvals.iter().copied().filter(move |(entry, _)| holding.contains(entry.digest()))
 }
 
 /// The comments of a record that are not resolved, oldest first.
@@ -316,12 +325,15 @@ impl Record {
         last
     }
 
-    /// The latest approval that has not been taken back, with what was approved: of those that completed a board, or of all
-    /// if no board has been completed. Otherwise whoever approves first would hide what changed from the others.
+    /// The latest approval that has not been taken back, with what was approved: of those that completed the board in force, of
+    /// those that completed a former board, or of all. Otherwise whoever approves first, or under rules with an earlier date,
+    /// would hide what changed from the others.
     pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
         let approvals: Vec<(&Entry, &Subject)> =
             self.standing_entries().filter_map(|entry| Some((entry, self.subject(entry)?))).collect();
-        completed(self, &approvals).next_back().or_else(|| approvals.last().copied())
+        let completed = completed(self, &approvals).collect::<Vec<_>>();
+        let present = completed.iter().rev().find(|(entry, _)| self.is_under_rules(entry));
+        present.or(completed.last()).or(approvals.last()).copied()
     }
 }
 

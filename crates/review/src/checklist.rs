@@ -48,6 +48,8 @@ pub struct Review {
     pub runs_programs: bool,
     /// What runs with chance came to, if any were made.
     pub robustness: Option<Line>,
+    /// The digest of these runs, with their settings; an approval signs it.
+    pub runs: Option<String>,
     /// What was found of the rules of the mission, by what they say: see [`evaluate`](crate::flight_rule::evaluate).
     pub findings: Vec<Finding>,
     /// The rules of the mission, each held or not.

@@ -3,11 +3,13 @@
 use exact::{Rational, Time};
 use smol_str::SmolStr;
 use snapshot::robustness::Traverses;
-use snapshot::{Robustness, Snapshot};
+use snapshot::{Robustness, Snapshot, Uncertainty};
 use tpn::Supply;
 
 use super::flight_rule::{self, Finding, MissionRule, Outcome};
+use super::record::{Runs, short};
 use super::rules::{FlightRules, at_least, percent};
+use super::sealed::Sealed;
 use super::{Line, Review, Section, Status};
 
 impl Line {
@@ -66,8 +68,8 @@ impl MissionRule {
         let mut line = Line::new(status, text);
         let is_broken = matches!(found.map(|it| &it.outcome), Some(Outcome::Broken(_)));
         line.needs_waiver = self.waivable && is_broken;
-        if let Some(Finding { names, nodes, .. }) = found {
-            (line.names, line.nodes) = (names.clone(), nodes.clone());
+        if let Some(Finding { names, nodes, place, .. }) = found {
+            (line.names, line.nodes, line.place) = (names.clone(), nodes.clone(), place.clone());
         }
         let source = if self.source.is_empty() { String::new() } else { format!("{}, ", self.source) };
         line.criterion = Some(format!("{} ({source}flight rules of this mission)", self.rule));
@@ -123,7 +125,9 @@ impl Review {
         self.judge_margins(rules, &unit);
         self.judge_resources(rules);
         self.judge_traverses(rules);
-        self.robustness = robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self));
+        let robustness = robustness.filter(|it| it.tally.runs > 0);
+        self.robustness = robustness.map(|it| success(rules, it, self));
+        self.runs = robustness.map(|it| Runs::new(&self.content_hash, it).digest());
         let worst =
             Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
@@ -218,6 +222,15 @@ impl Review {
     }
 }
 
+/// Returns which distributions the runs had, unless they are the usual ones: `, own distributions 3f2a91c07b4e`.
+fn distributions(uncertainty: &Uncertainty) -> String {
+    if *uncertainty == Uncertainty::default() {
+        return String::new();
+    }
+    let digest = Sealed::new(uncertainty.clone()).digest().to_owned();
+    format!(", own distributions {}", short(&digest))
+}
+
 /// Returns what runs with chance came to, held against the rule.
 fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
     let (tally, settings) = (&found.tally, &found.settings);
@@ -229,9 +242,10 @@ fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
         format!("only {} of {} runs", tally.runs, settings.runs)
     };
     let mut text = format!(
-        "{} of {made} reached the end (Monte Carlo, seed {}; 95% confidence: {} to {})",
+        "{} of {made} reached the end (Monte Carlo, seed {}{}; 95% confidence: {} to {})",
         percent(rate),
         settings.seed,
+        distributions(&settings.uncertainty),
         percent(low),
         percent(high)
     );
@@ -255,6 +269,8 @@ fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
         (true, None) => Status::Information,
     };
     let mut line = Line::new(checked, text);
+    // It is of the whole plan, and of no other.
+    line.place = format!("content {}", review.content_hash);
     if let Some(wanted) = rules.success_rate {
         let source = FlightRules::source(|it| it.success_rate == rules.success_rate);
         let status = match rate {

@@ -3,7 +3,7 @@
 //! A person is a public key with a name. The owner of the secret key signs as that person, and the signature counts for all
 //! who trust the public key. Secret keys stay in the browser, or in a file that their owner saves.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use data_encoding::HEXLOWER;
@@ -86,17 +86,26 @@ impl fmt::Debug for SecretKey {
 
 /// Whose signatures count: keys with the names of their owners.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Trust(BTreeMap<PublicKey, String>);
+pub struct Trust {
+    names: BTreeMap<PublicKey, String>,
+    /// The keys that sign here.
+    own: BTreeSet<PublicKey>,
+}
 
 impl Trust {
     /// The name of a key's owner, if the key is trusted.
     pub fn name_of(&self, key: &PublicKey) -> Option<&str> {
-        self.0.get(key).map(String::as_str)
+        self.names.get(key).map(String::as_str)
+    }
+
+    /// Returns whether a key signs here.
+    pub fn is_own(&self, key: &PublicKey) -> bool {
+        self.own.contains(key)
     }
 
     /// The trusted key whose owner's name could be taken for this one.
     pub fn alike(&self, name: &str) -> Option<&str> {
-        self.0.values().find(|known| names::are_alike(known, name)).map(String::as_str)
+        self.names.values().find(|known| names::are_alike(known, name)).map(String::as_str)
     }
 }
 
@@ -176,7 +185,9 @@ impl KeyRing {
 
     /// Whose signatures count.
     pub fn trust(&self) -> Trust {
-        Trust(self.people.iter().map(|person| (person.key.clone(), person.name.clone())).collect())
+        let names = self.people.iter().map(|person| (person.key.clone(), person.name.clone()));
+        let own = self.people.iter().filter(|person| person.secret.is_some());
+        Trust { names: names.collect(), own: own.map(|person| person.key.clone()).collect() }
     }
 
     /// Trusts a person. A secret key of someone who is trusted already is added.

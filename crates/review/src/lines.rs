@@ -49,6 +49,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         separation_violations: separation_violations(snapshot, &places),
         runs_programs: snapshot.program.primitives.iter().any(|primitive| primitive.runs.is_some()),
         robustness: None,
+        runs: None,
         findings: Vec::new(),
         mission_rules: Vec::new(),
         warnings: warnings(snapshot, &places),

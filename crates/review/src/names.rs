@@ -112,7 +112,7 @@ fn letters(form: impl Iterator<Item = char>) -> String {
 }
 
 /// Letters and digits that look like others, in small letters, where the standard tells them apart.
-const PAIRS: [(char, &str); 13] = [
+const PAIRS: [(char, &str); 19] = [
     ('w', "vv"),
     ('d', "cl"),
     ('m', "rn"),
@@ -126,6 +126,12 @@ const PAIRS: [(char, &str); 13] = [
     ('7', "t"),
     ('8', "b"),
     ('9', "g"),
+    ('в', "b"),
+    ('к', "k"),
+    ('м', "rn"),
+    ('н', "h"),
+    ('п', "n"),
+    ('т', "t"),
 ];
 
 #[cfg(test)]
@@ -142,6 +148,9 @@ mod tests {
             ["Ada", "А\u{64}а"],
             ["Ada", "Ａｄａ"],
             ["Pope", "Роре"],
+            ["Otto", "Отто"],
+            ["Ana", "Апа"],
+            ["Kim", "Кіm"],
             ["Ida", "lda"],
             ["Ida", "ida"],
             ["Otto", "0tto"],

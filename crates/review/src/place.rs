@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::Span;
 use snapshot::Snapshot;
-use tpn::{ArcKind, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind};
+use tpn::{ArcKind, BlockKind, EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind};
 
 use super::hash::sha256;
 use super::{Line, Review};
@@ -43,6 +43,28 @@ pub(super) fn find_places(review: &mut Review, snapshot: &Snapshot) {
     review.events = events;
 }
 
+/// Returns the place of a flight rule in a network: those of all activities that it names, and of all that assert, require,
+/// use or move what it names, with their bounds.
+pub(super) fn place_of_rule(network: &Network, rule: &str) -> String {
+    let is_part = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.');
+    let words: BTreeSet<&str> =
+        rule.split(|letter| !is_part(letter)).filter(|word| !word.is_empty()).collect();
+    let activities = network.occurrences.iter().enumerate();
+    let activities = activities.filter(|(_, it)| words.contains(it.activity.as_str()));
+    let labels = network.labels.iter().filter(|label| {
+        let variable = &network.variables[label.literal.variable.index()];
+        words.contains(variable.name.as_str())
+    });
+    let uses = network.uses.iter().filter(|used| {
+        let resource = &network.resources[used.resource.index()];
+        words.contains(resource.name.as_str())
+    });
+    let owners = labels.filter_map(|label| label.owner).chain(uses.filter_map(|used| used.owner));
+    let about: BTreeSet<OccurrenceId> =
+        activities.map(|(index, _)| OccurrenceId::from_index(index)).chain(owners).collect();
+    Surroundings::new(network).place_with_bounds(&about)
+}
+
 /// What is around the events of a network.
 struct Surroundings<'n> {
     network: &'n Network,
@@ -50,6 +72,8 @@ struct Surroundings<'n> {
     /// What is written where, in textual order.
     written: Vec<(Span, OccurrenceId)>,
     alternatives: Alternatives,
+    /// In how many parallel branches each activity is, one within the other, by its arc.
+    branches: BTreeMap<usize, usize>,
     /// What was found of an event, backwards or forwards.
     known: BTreeMap<(NodeId, bool), String>,
 }
@@ -63,7 +87,8 @@ impl<'n> Surroundings<'n> {
             ids().filter_map(|(id, it)| Some((it.span?, id))).collect();
         written.sort_by_key(|(span, id)| (span.start, span.end, *id));
         let alternatives = Alternatives::new(network);
-        Self { network, occurrences, written, alternatives, known: BTreeMap::new() }
+        let branches = branches(network);
+        Self { network, occurrences, written, alternatives, branches, known: BTreeMap::new() }
     }
 
     fn place(&mut self, line: &Line) -> String {
@@ -95,7 +120,12 @@ impl<'n> Surroundings<'n> {
         let occurrence = &self.network.occurrences[id.index()];
         let parent = occurrence.parent;
         let parent = parent.map_or("", |parent| self.network.occurrences[parent.index()].name.as_str());
-        self.between(parent, occurrence.start, occurrence.end)
+        let parent = match occurrence.arc.and_then(|arc| self.branches.get(&arc.index())) {
+            None => parent.to_owned(),
+            Some(1) => format!("a branch of {parent}"),
+            Some(depth) => format!("{depth} branches of {parent}"),
+        };
+        self.between(&parent, occurrence.start, occurrence.end)
     }
 
     fn between(&mut self, parent: &str, start: NodeId, end: NodeId) -> String {
@@ -201,6 +231,35 @@ impl<'n> Surroundings<'n> {
         });
         found.collect()
     }
+}
+
+/// In how many parallel branches each arc is, one within the other, if it is in any.
+fn branches(network: &Network) -> BTreeMap<usize, usize> {
+    let mut found = BTreeMap::new();
+    let mut around = vec![0; network.blocks.len()];
+    // Blocks come after what is in them.
+    for (index, block) in network.blocks.iter().enumerate().rev() {
+        let own = around[index];
+        let (parts, is_parallel) = match &block.kind {
+            BlockKind::Leaf { arc } => {
+                if own > 0 {
+                    found.insert(arc.index(), own);
+                }
+                continue;
+            }
+            BlockKind::Parallel { branches } => (branches.as_slice(), true),
+            BlockKind::Sequence { children: parts } | BlockKind::Choose { alternatives: parts, .. } => {
+                (parts.as_slice(), false)
+            }
+            BlockKind::Scope { child, .. } | BlockKind::Guard { child, .. } => {
+                (std::slice::from_ref(child), false)
+            }
+        };
+        for part in parts {
+            around[part.index()] = own + usize::from(is_parallel && parts.len() > 1);
+        }
+    }
+    found
 }
 
 /// A place, by its digest if it is long.

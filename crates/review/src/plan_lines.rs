@@ -581,7 +581,13 @@ fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
         alternatives.iter().filter(|it| it.fate != Fate::Taken).map(|it| it.name.as_str()).collect();
     match others.len() {
         0 => format!("{name} selects {taken}, its only alternative"),
-        1..=MAX_NAMED => format!("{name} selects {taken} instead of {}", others.join(" or ")),
+        1..=MAX_NAMED => {
+            let others: Vec<&str> = match others.as_slice() {
+                [only] => vec![tpn::other_choice(only)],
+                _ => others,
+            };
+            format!("{name} selects {taken} instead of {}", others.join(" or "))
+        }
         count => format!("{name} selects {taken} instead of one of {count} others"),
     }
 }

@@ -43,6 +43,8 @@ pub struct Record {
     first_rules: BTreeMap<String, usize>,
     /// Whose signatures count.
     trust: Trust,
+    /// Whether the reader has required the rules in force, whatever rules unknown keys have set.
+    has_required_rules: bool,
     /// When the entries were checked.
     now: Option<Timestamp>,
     /// Where each entry is, by its digest.
@@ -224,6 +226,26 @@ impl Record {
     /// again are no longer those that an earlier approval is of.
     pub fn is_under_rules(&self, entry: &Entry) -> bool {
         self.numbers.get(entry.digest()).is_some_and(|&index| self.ruling.is_under(index))
+    }
+
+    /// Returns whether the flight rules that an entry names were in force when it was made, and its signer knew them.
+    pub(super) fn was_under_rules(&self, entry: &Entry) -> bool {
+        self.numbers.get(entry.digest()).is_some_and(|&index| self.ruling.was_under_own(index))
+    }
+
+    /// Notes that the reader requires the rules in force: then rules that unknown keys have set block nothing.
+    pub const fn confirm_rules(&mut self) {
+        self.has_required_rules = true;
+    }
+
+    /// Returns whether the reader requires the rules in force.
+    pub(super) const fn has_required_rules(&self) -> bool {
+        self.has_required_rules
+    }
+
+    /// Returns whose signatures count.
+    pub(super) const fn trust(&self) -> &Trust {
+        &self.trust
     }
 
     /// Returns whether an entry comes before the flight rules that it names, wherever they are set.

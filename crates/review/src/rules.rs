@@ -224,6 +224,11 @@ impl RequiredRules {
         Ok(Self { rules: FlightRules::from_members(Value::Object(members))?, names })
     }
 
+    /// Returns whether it says who must approve.
+    pub fn names_board(&self) -> bool {
+        self.names.iter().any(|name| name == "board")
+    }
+
     /// The names of the rules that are others than required: `board`, `slope_deg`.
     pub fn differences(&self, rules: &FlightRules) -> Vec<&str> {
         let of = |rules: &FlightRules| serde_json::to_value(rules).unwrap_or_default();

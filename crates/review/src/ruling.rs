@@ -10,8 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::FlightRules;
 use super::check::{Check, Signature};
 use super::keys::PublicKey;
+use super::names;
 use super::record::{Act, Entry, Record, USUAL_RULES};
-use super::{names, seat};
+use super::seat::{self, Seat};
 
 /// Rules that may be in force at the same time. If more conflict, nothing is approved in this history any more.
 const MAX_IN_FORCE: usize = 8;
@@ -23,10 +24,12 @@ pub(super) struct Ruling {
     in_force: Vec<InForce>,
     /// Which entries follow the last change of the rules; `None` if they have never changed.
     under: Option<Vec<bool>>,
-    /// Entries that set rules to which the board did not agree.
+    /// Entries that set rules without effect.
     without_effect: BTreeSet<usize>,
-    /// The digests of rules that are in force, or have been.
-    ever_in_force: BTreeSet<String>,
+    /// Those of them whose signers did not know stricter rules.
+    unaware: BTreeSet<usize>,
+    /// Whether each entry names rules that were in force then, and that its signer knew.
+    under_own: Vec<bool>,
 }
 
 /// Rules in force.
@@ -146,16 +149,15 @@ impl Ruling {
                     followers.push(follows);
                 }
             }
+            ruling.under_own.push(ruling.in_force.iter().any(|it| {
+                let follows = it.followers.as_ref().is_none_or(|followers| followers[index]);
+                it.digest == entry.rules && follows
+            }));
             if let Some(rules) = rules_of(entry).filter(|_| check.counts()) {
                 ruling.add(&all, index, rules);
             }
         }
-        let last = ruling.in_force.last();
-        ruling.under = last.and_then(|it| it.followers.clone());
-        if ruling.under.is_none() {
-            // Otherwise, anyone could approve by the usual rules what the board has not seen.
-            ruling.ever_in_force.insert(USUAL_RULES.digest());
-        }
+        ruling.under = ruling.in_force.last().and_then(|it| it.followers.clone());
         ruling
     }
 
@@ -173,6 +175,7 @@ impl Ruling {
         }
         if effects.contains(&Effect::Nothing) || self.in_force.len() > MAX_IN_FORCE {
             self.without_effect.insert(index);
+            self.unaware.insert(index);
             return;
         }
         let mut signed = vec![index];
@@ -214,12 +217,11 @@ impl Ruling {
         let mut effects = effects.iter();
         self.in_force.retain(|_| effects.next() == Some(&Effect::Conflicts));
         self.in_force.push(new);
-        self.ever_in_force.insert(digest);
     }
 
-    /// Returns whether rules with this digest are in force, or have been.
-    pub(super) fn was_in_force(&self, digest: &str) -> bool {
-        self.ever_in_force.contains(digest)
+    /// Returns whether the rules that an entry names were in force then, and its signer knew them.
+    pub(super) fn was_under_own(&self, index: usize) -> bool {
+        self.under_own.get(index) == Some(&true)
     }
 
     /// Returns whether an entry follows the last change of the rules.
@@ -249,6 +251,16 @@ pub(super) fn followers(entries: &[Entry], first: usize) -> Vec<bool> {
         marked.push(index == first || all.follows(index, &marked));
     }
     marked
+}
+
+/// The bit that many entries with unknown keys share.
+const LAST_BIT: u128 = 1 << 127;
+
+/// Flight rules that an unknown key has set.
+struct Unsettled<'a> {
+    entry: &'a Entry,
+    board: &'a [Seat],
+    bit: u128,
 }
 
 /// Flight rules that weaken the board, and that the board in force has not agreed to.
@@ -302,26 +314,34 @@ impl Record {
         self.at(&last)
     }
 
-    /// Returns the last entry that sets flight rules with an unknown key, unless a trusted person who knew of it has set flight
-    /// rules since. Otherwise, whoever leaves out the key of the right person would get a weaker board.
+    /// Returns the last entry that sets flight rules with an unknown key, and that no one has settled who knew of it: the owner
+    /// of this copy, with any rules, or a trusted person with a board that is not weaker. Otherwise, whoever leaves out the
+    /// key of the right person would get a weaker board.
     pub fn unknown_rules(&self) -> Option<&Entry> {
-        let mut is_seen = vec![false; self.entries().len()];
-        let mut last = None;
-        for (index, (entry, check)) in (0..is_seen.len()).rev().zip(self.checked().rev()) {
-            if rules_of(entry).is_some() {
-                let is_unknown = check.signature == Signature::Unknown && check.problem.is_none();
-                if is_unknown && !is_seen[index] {
-                    last = last.or(Some(entry));
+        let mut unknown: Vec<Unsettled<'_>> = Vec::new();
+        // Which of the entries with unknown keys each entry follows, by their bits.
+        let mut known: Vec<u128> = Vec::with_capacity(self.entries().len());
+        let mut bit = 1;
+        for (entry, check) in self.checked() {
+            let former = entry.former.iter().filter_map(|former| self.number(former).checked_sub(1));
+            let mut follows = former.filter_map(|former| known.get(former)).fold(0, |all, bits| all | bits);
+            if let Some(rules) = rules_of(entry) {
+                if check.signature == Signature::Unknown && check.problem.is_none() {
+                    unknown.push(Unsettled { entry, board: &rules.board, bit });
+                    follows |= bit;
+                    // All others share the last one.
+                    bit = bit.checked_shl(1).filter(|bit| *bit != 0).unwrap_or(LAST_BIT);
+                } else if check.counts() {
+                    let is_own = entry.key.as_ref().is_some_and(|key| self.trust().is_own(key));
+                    unknown.retain(|it| {
+                        let is_known = follows & it.bit != 0 && (is_own || it.bit != LAST_BIT);
+                        !is_known || (!is_own && seat::weakens(it.board, &rules.board))
+                    });
                 }
-                is_seen[index] |= check.counts();
             }
-            if is_seen[index] {
-                for former in entry.former.iter().filter_map(|former| self.number(former).checked_sub(1)) {
-                    is_seen[former] = true;
-                }
-            }
+            known.push(follows);
         }
-        last
+        unknown.last().filter(|_| !self.has_required_rules()).map(|it| it.entry)
     }
 
     /// Returns whether one set of flight rules is in force, and no unknown key has set others since.
@@ -375,6 +395,9 @@ impl Record {
             open.filter(|(_, proposed)| proposed.by.contains(&index) || proposed.again.contains(&index));
         Some(match open.and_then(|(in_force, proposed)| self.proposal(in_force, proposed)) {
             Some(open) => format!("weakens the board, with {}", open.consent()),
+            None if self.ruling().unaware.contains(&index) => {
+                "was set without knowing of stricter rules".to_owned()
+            }
             None => "weakened the board, which did not agree".to_owned(),
         })
     }

@@ -71,8 +71,8 @@ fn an_alternative_of_a_best_plan_says_what_it_would_come_to() {
         sentences,
         [
             "not chosen: with it and the previous choices, reward 6, end 10 at best",
-            "taken",
-            "taken",
+            "selected",
+            "selected",
             "not chosen: with it and the previous choices, reward 10, end 20 at best"
         ]
     );

@@ -343,6 +343,18 @@ impl Snapshot {
     pub fn plan(&self) -> Option<&tpn::Plan> {
         self.planning.as_ref()?.outcome.plans.first()
     }
+
+    /// How many events and constraints the plan has, as the review counts events; without a plan, the network.
+    pub fn size(&self) -> Option<(usize, usize)> {
+        let (network, plan) = (self.network.as_deref()?, self.plan());
+        let is_planned =
+            |node: usize| plan.is_none_or(|plan| matches!(plan.windows.get(node), Some(Some(_))));
+        let nodes = network.nodes.iter().enumerate().filter(|(node, _)| is_planned(*node));
+        let events = nodes.map(|(_, node)| node.events.len()).sum();
+        let selected =
+            |plan: &tpn::Plan| plan.selected_arcs.iter().filter(|is_selected| **is_selected).count();
+        Some((events, plan.map_or(network.arcs.len(), selected)))
+    }
 }
 
 impl VehicleMotion {

@@ -11,6 +11,14 @@ const MIN_ARGUMENT: usize = 6;
 /// So many parts of an alternative are named.
 const MAX_NAMED: usize = 2;
 
+/// What an alternative is called that does nothing.
+const NOTHING: &str = "nothing";
+
+/// Returns how an alternative of this name reads after `instead of`: one that does nothing skips the one that was selected.
+pub fn other_choice(name: &str) -> &str {
+    if name == NOTHING { "skipping it" } else { name }
+}
+
 impl Network {
     /// Returns what an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path(A, …,
     /// TAI_POS)` where the call is long, or `Drive(RIDGE), Dig#1 and 2 more`. `nothing` where it does nothing.
@@ -41,7 +49,7 @@ impl Network {
             calls
         };
         match parts.as_slice() {
-            [] => "nothing".to_owned(),
+            [] => NOTHING.to_owned(),
             [single] => self.call(single),
             several => {
                 let names: Vec<String> =

@@ -22,6 +22,7 @@ pub mod text;
 pub mod vocabulary;
 pub mod worth;
 
+pub use alternative::other_choice;
 pub use compile::{
     Assumption, Ground, Level, Top, assumed, assumptions, compile, compile_on, compile_scenarios,
     merge_diagnostics,

@@ -101,7 +101,7 @@ impl Dialog {
             Self::Palette { .. } => "Command palette",
             Self::GoToLine { .. } => "Go to line",
             Self::Rename { .. } => "Rename",
-            Self::Epoch { .. } => "Mission start date",
+            Self::Epoch { .. } => "Mission start (date and time, UTC)",
             Self::Explain(_) => "Explanation",
             Self::Missions { .. } => "Missions",
             Self::MissionName { .. } => "Mission name",

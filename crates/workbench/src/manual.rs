@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use markdown::{Block, Content, Document, anchor, plain};
+use markdown::{Block, Content, Document, Run, anchor, plain};
 use rmpl::editor::Topic;
 
 use crate::lesson::Glossary;
@@ -100,12 +100,14 @@ const GROUPS: &[(&str, &[(&str, &str)])] = &[
             ("files", include_str!("../../../docs/files.md")),
             ("browsers", include_str!("../../../docs/browsers.md")),
             ("accessibility", include_str!("../../../docs/accessibility.md")),
-            ("glossary", include_str!("../../../assets/glossary.md")),
+            (GLOSSARY, include_str!("../../../assets/glossary.md")),
             ("specification", include_str!("../../../docs/specification.md")),
         ],
     ),
 ];
 
+/// The page of the terms.
+pub const GLOSSARY: &str = "glossary";
 /// Places that a search answers with at most.
 const MAX_FOUND: usize = 60;
 /// Letters of an excerpt before and after what was found.
@@ -120,12 +122,27 @@ static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {
 });
 
 fn page(group: &'static str, name: &'static str, text: &str) -> Page {
-    let document = Document::parse(&with_known_signs(text));
+    let mut document = Document::parse(&with_known_signs(text));
+    if name == GLOSSARY {
+        name_terms(&mut document);
+    }
     let title = document.blocks.iter().find_map(|block| match &block.content {
         Content::Heading { level: 1, text } => Some(plain(text)),
         _ => None,
     });
     Page { group, name, title: title.unwrap_or_else(|| name.to_owned()), document }
+}
+
+/// Leaves one form of each term in its heading: the others are for links.
+fn name_terms(glossary: &mut Document) {
+    for block in &mut glossary.blocks {
+        if let Content::Heading { level: 2, text } = &mut block.content
+            && let Some(term) = Glossary::get().in_line(block.line)
+            && let Some(run) = text.first().cloned()
+        {
+            *text = vec![Run { text: term.heading(), ..run }];
+        }
+    }
 }
 
 /// Signs that the page's fonts lack, with what represents them on screen.
@@ -237,7 +254,9 @@ pub fn search(query: &str) -> Vec<Found> {
             if is_heading {
                 heading.clone_from(&text);
             }
-            let lower = text.to_lowercase();
+            let term = Glossary::get().in_line(block.line).filter(|_| is_heading && page.name == GLOSSARY);
+            // A term is found in all its forms.
+            let lower = term.map_or_else(|| text.clone(), |term| term.names.join(" ")).to_lowercase();
             if !words.iter().all(|word| lower.contains(word.as_str())) {
                 continue;
             }
@@ -250,7 +269,7 @@ pub fn search(query: &str) -> Vec<Found> {
             }
             let rank = match (is_heading, page.name) {
                 (true, _) => 0,
-                (false, "glossary") => 1,
+                (false, GLOSSARY) => 1,
                 (false, _) => 2,
             };
             let excerpt = if is_heading { below(page, block) } else { excerpt(&text, &words[0]) };
@@ -375,6 +394,11 @@ mod tests {
 
     #[test]
     fn a_search_finds_headings_first_and_all_of_its_words() {
+        let glossary = page_named(GLOSSARY).expect("a page");
+        assert!(glossary.document.heading("margin").is_some());
+        let margin =
+            search("margins").into_iter().find(|it| it.page == GLOSSARY).expect("a term in another form");
+        assert_eq!((margin.section.as_str(), margin.title.as_str()), ("margin", "Glossary · margin"));
         let found = search("objectives");
         assert_eq!(found.first().map(|it| it.section.as_str()), Some("objectives"), "{found:?}");
         for place in search("Unary RESOURCE") {

@@ -116,7 +116,7 @@ fn figures(ui: &mut Ui, context: &Context<'_>) {
     };
     let frame = &context.state.frame;
     if !frame.renderer.is_empty() {
-        faint(frame.renderer.clone());
+        faint(frame.renderer_name().to_owned());
     }
     let Some(snapshot) = context.snapshot else { return };
     let timings = snapshot.timings;
@@ -125,12 +125,8 @@ fn figures(ui: &mut Ui, context: &Context<'_>) {
         timings.parse_millis, timings.compile_millis, timings.plan_millis
     );
     faint(text);
-    if let Some(network) = &snapshot.network {
-        faint(format!(
-            "{}  {}",
-            counted(network.nodes.len() as u64, "event"),
-            counted(network.arcs.len() as u64, "constraint")
-        ));
+    if let Some((events, constraints)) = snapshot.size() {
+        faint(format!("{}  {}", counted(events as u64, "event"), counted(constraints as u64, "constraint")));
     }
     faint(format!("revision {}", context.state.document.revision()));
 }

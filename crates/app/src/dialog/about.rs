@@ -11,8 +11,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     ui.set_width(380.0);
     theme::structure::mark_heading(&ui.heading(concat!("Enroute ", env!("CARGO_PKG_VERSION"))), 2);
     ui.label(
-        "Plan missions for cooperating vehicles: write RMPL, plan with temporal plan networks, verify \
-         each plan independently, and simulate the drive over terrain.",
+        "Write missions in RMPL, plan them with temporal plan networks, verify each plan independently, \
+         and simulate drives over terrain.",
     );
     ui.add_space(space::S);
     ui.label(
@@ -20,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             .color(context.tokens.text_muted),
     );
     if !context.state.frame.renderer.is_empty() {
-        let drawn = format!("Renderer: {}", context.state.frame.renderer);
+        let drawn = format!("Renderer: {}", context.state.frame.renderer_name());
         ui.label(RichText::new(drawn).color(context.tokens.text_muted));
     }
     ui.add_space(space::M);

@@ -20,11 +20,11 @@ pub(super) fn show(
 ) {
     ui.set_width(340.0);
     theme::structure::mark_heading(&ui.heading(form.title()), 2);
-    ui.label("Mission start date");
+    ui.label("Mission start (date and time, UTC)");
     let mut text = epoch.to_owned();
     let field =
         TextEdit::singleline(&mut text).hint_text("2004-01-25T05:05:00Z").desired_width(f32::INFINITY);
-    let field = ui.add(field).accessible_name("Mission start date");
+    let field = ui.add(field).accessible_name("Mission start (date and time, UTC)");
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !enter {
         field.request_focus();

@@ -85,7 +85,7 @@ fn planning(ui: &mut Ui, context: &Context<'_>, send: &mut dyn FnMut(SettingsCom
     }
     let mut seed = plan.seed;
     ui.horizontal(|ui| {
-        let label = ui.label("Seed of path planning");
+        let label = ui.label("Path planning seed");
         if ui.add(egui::DragValue::new(&mut seed)).labelled_by(label.id).changed() {
             send(SettingsCommand::SetSeed(seed));
         }
@@ -136,7 +136,7 @@ fn text_and_terrain(ui: &mut Ui, context: &Context<'_>, views: &mut Views) {
     ui.checkbox(&mut views.terrain.names, "Place and vehicle names");
     ui.checkbox(&mut views.terrain.grid, "Grid in mission coordinates");
     ui.horizontal(|ui| {
-        ui.label("Effects");
+        ui.label("Visual effects");
         for (choice, name, help) in [
             (Effects::Automatic, "Automatic", "Full, and reduced while frames are slow"),
             (Effects::Full, "Full", "Ground detail and shadows in full resolution"),
@@ -146,6 +146,6 @@ fn text_and_terrain(ui: &mut Ui, context: &Context<'_>, views: &mut Views) {
         }
     });
     ui.add_space(space::S);
-    let note = "For more options, open Show in a panel.";
+    let note = "Each panel's Show menu has more options.";
     ui.label(RichText::new(note).small().color(context.tokens.text_muted));
 }

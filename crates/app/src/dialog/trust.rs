@@ -72,7 +72,7 @@ pub(super) fn show(
 /// else trusts no one.
 fn is_open_for_a_while(ui: &Ui, people: &[Person]) -> bool {
     let keys: Vec<&str> = people.iter().map(|person| person.key.as_str()).collect();
-    let id = Id::new(("trust", keys));
+    let id = Id::unique(("trust", keys));
     let (now, frame) = (ui.input(|input| input.time), ui.ctx().cumulative_frame_nr());
     let (since, last_frame) = ui.data(|data| data.get_temp(id)).unwrap_or((now, frame));
     // The question may be asked a second time.

@@ -115,7 +115,7 @@ fn why_the_other_path_was_not_taken_is_said() {
     let app = reviewing();
     let found = app.harness.query_all_by_role(Role::Button).any(|node| {
         node.accesskit_node().label().is_some_and(|label| {
-            label.starts_with("Group-Traverse-Path(PATH2_1, …, TAI_POS): ")
+            label.starts_with("Group-Traverse-Path(PATH2_1, …, TAI_POS)")
                 && label.contains("Impossible")
                 && label.contains("PATH2")
         })
@@ -489,7 +489,7 @@ fn schedules_are_written_from_the_menu_once_the_start_is_known() {
     app.harness.state_mut().dispatch("export.icalendar", &json!(null)).expect("a plan");
     app.settle();
     assert_eq!(app.json()["dialog"], "epoch");
-    type_into(&mut app, "Mission start date", "2004-01-25T05:05:00Z");
+    type_into(&mut app, "Mission start (date and time, UTC)", "2004-01-25T05:05:00Z");
     click(&mut app, "Export");
     assert_eq!(app.json()["dialog"], Value::Null);
     let open_mct = json!({ "as": "open-mct", "epoch": "2004-01-25T05:05:00Z" });

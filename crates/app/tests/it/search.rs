@@ -276,8 +276,8 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
         text.and_then(|count| count.parse::<u64>().ok()).unwrap_or_else(|| panic!("no {words} in {shown:?}"))
     };
     let both = count("both: ");
-    assert_eq!(both + count("only Chronological: "), states(&app, 0));
-    assert_eq!(both + count("only Conflict-directed: "), states(&app, 1));
+    assert_eq!(both + count("Chronological only: "), states(&app, 0));
+    assert_eq!(both + count("Conflict-directed only: "), states(&app, 1));
     let trees = |app: &App| {
         let names = std::cell::RefCell::new(std::collections::BTreeSet::new());
         let found = app.harness.get_all_by(|node| {

@@ -95,6 +95,9 @@ impl Verify {
         };
         self.trusted.judge(&mut record)?;
         let required = self.required_rules()?;
+        if required.as_ref().is_some_and(|it| it.names_board() && it.differences(record.rules()).is_empty()) {
+            record.confirm_rules();
+        }
         if let Some(missing) = self.has.iter().find(|digest| record.entry(digest).is_none()) {
             return self.refuse(&format!("the entry {missing} is missing"));
         }

@@ -225,7 +225,7 @@ impl Run<'_> {
         } else {
             format!("at {}", shown(moment(start)?.max(self.now)))
         };
-        Some(format!("{who} needs {text} {when}, but it holds only until {}", shown(over)))
+        Some(format!("{who} needs {text} {when}, but {text} holds only until {}", shown(over)))
     }
 
     /// The first activity that an interval begins with, or else lies in it.
@@ -247,12 +247,16 @@ impl Run<'_> {
     }
 }
 
-/// Returns why a run is stopped, in one sentence: what was needed, and what cannot be given up, or why there is no
+/// Returns why a run is stopped: what was needed, and what cannot be given up, or why there is no
 /// plan.
 pub(super) fn stopped_for(need: Option<&str>, no_plan: &str, hindrance: Option<&str>) -> String {
     match (need, hindrance) {
-        (Some(need), Some(hindrance)) => format!("{need}: {hindrance}"),
-        (Some(need), None) => format!("{need}: {no_plan}"),
+        (Some(need), Some(hindrance)) => format!("{need}. {hindrance}."),
+        (Some(need), None) => {
+            let mut letters = no_plan.chars();
+            let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+            format!("{need}. {first}{}.", letters.as_str())
+        }
         (None, Some(hindrance)) => format!("{no_plan}; {hindrance}"),
         (None, None) => no_plan.to_owned(),
     }

@@ -316,7 +316,7 @@ fn what_cannot_be_aborted_stops_with_what_it_needed_and_when() {
     };
     assert_eq!(
         reason,
-        "Walk#1 needs PATH1=OK until 20, but it holds only until 10: Walk#1 is in progress and cannot be ended early"
+        "Walk#1 needs PATH1=OK until 20, but PATH1=OK holds only until 10. Walk#1 is in progress and cannot be ended early."
     );
 }
 

@@ -100,7 +100,7 @@ fn arm(scenario: &str) -> String {
 fn values_are_written_down_as_they_change() {
     let outcome = execute(&arm("Deploy(); delay[10,50]; Dig()"), &[]);
     assert_eq!(outcome.ending, Ending::Finished);
-    assert_eq!(record(&outcome), ["0 ARM is changing by Deploy#1", "5 ARM=OUT by Deploy#1"]);
+    assert_eq!(record(&outcome), ["0 Deploy#1 changes ARM", "5 ARM=OUT by Deploy#1"]);
     assert_eq!(violations(&outcome), [""; 0]);
 }
 
@@ -114,10 +114,10 @@ fn what_relied_on_a_value_that_is_gone_is_replaced() {
     assert_eq!(
         record(&outcome),
         [
-            "0 ARM is changing by Deploy#1",
+            "0 Deploy#1 changes ARM",
             "5 ARM=OUT by Deploy#1",
             "7 ARM=IN by the world",
-            "15 ARM is changing by Deploy#2",
+            "15 Deploy#2 changes ARM",
             "20 ARM=OUT by Deploy#2"
         ]
     );
@@ -178,7 +178,7 @@ fn a_change_that_nothing_relies_on_breaks_nothing() {
 fn a_change_while_an_activity_changes_the_variable_comes_to_nothing() {
     let outcome = execute(&arm("Deploy(); Dig()"), &[becomes("ARM", "IN", 3)]);
     assert_eq!(outcome.ending, Ending::Finished);
-    assert_eq!(record(&outcome), ["0 ARM is changing by Deploy#1", "5 ARM=OUT by Deploy#1"]);
+    assert_eq!(record(&outcome), ["0 Deploy#1 changes ARM", "5 ARM=OUT by Deploy#1"]);
 }
 
 #[test]
@@ -206,7 +206,7 @@ const BATTERY: &str = "
 fn levels_are_written_down_as_they_change() {
     let outcome = execute(BATTERY, &[]);
     assert_eq!(outcome.ending, Ending::Finished);
-    assert_eq!(record(&outcome), ["0 Battery is at 35 by Drive#1", "16 Battery is at 10 by Drive#2"]);
+    assert_eq!(record(&outcome), ["0 Battery=35 by Drive#1", "16 Battery=10 by Drive#2"]);
 }
 
 #[test]
@@ -223,10 +223,10 @@ fn a_level_that_is_lost_is_made_good_where_that_is_possible() {
     assert_eq!(
         record(&outcome),
         [
-            "0 Battery is at 35 by Drive#1",
-            "12 Battery is at 10 by the world",
-            "45 Battery is at 60 by Charge#1",
-            "45 Battery is at 35 by Drive#2"
+            "0 Battery=35 by Drive#1",
+            "12 Battery=10 by the world",
+            "45 Battery=60 by Charge#1",
+            "45 Battery=35 by Drive#2"
         ]
     );
     // There is enough for the plan as it is.

@@ -116,9 +116,9 @@ fn every_alternative_has_its_own_reason() {
     assert_eq!(
         told,
         [
-            "with D1=0: A needs at least 30, but the scenario allows only 15",
-            "with D1=1: B needs at least 20, but the scenario allows only 15",
-            "with D1=2: MODE=X and MODE=Y overlap, and the planner cannot separate them: MODE=X and a gap of 1 need at least 4, \
+            "if D1 selects A#1, A needs at least 30, but the scenario allows only 15",
+            "if D1 selects B#1, B needs at least 20, but the scenario allows only 15",
+            "if D1 selects Tell(MODE=X)#1 and Tell(MODE=Y)#1, MODE=X and MODE=Y overlap, and the planner cannot separate them: MODE=X and a gap of 1 need at least 4, \
              but MODE=Y cannot wait that long",
         ]
     );

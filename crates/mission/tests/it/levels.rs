@@ -79,15 +79,10 @@ fn meters_that_are_driven_are_taken_from_the_battery() {
     let driven_m = driven_m(&execution);
     assert!((taken - driven_m).abs() < 0.01 * driven_m, "{taken} taken for {driven_m} m");
     let words: Vec<String> = record(&execution).into_iter().map(|(_, words)| words).collect();
-    let places: Vec<&str> = words.iter().filter(|it| it.starts_with("R1.at")).map(String::as_str).collect();
+    let places: Vec<&str> = words.iter().filter(|it| it.contains("R1.at")).map(String::as_str).collect();
     assert_eq!(
         places,
-        [
-            "R1.at is changing by Drive#1",
-            "R1.at=A by Drive#1",
-            "R1.at is changing by Drive#2",
-            "R1.at=B by Drive#2"
-        ]
+        ["Drive#1 changes R1.at", "R1.at=A by Drive#1", "Drive#2 changes R1.at", "R1.at=B by Drive#2"]
     );
 }
 
@@ -155,7 +150,7 @@ fn what_the_world_changes_is_in_the_record_and_not_in_the_networks_that_are_show
     assert_eq!(changes(&execution), ["D1 takes Nap#1 instead of Dig#1"]);
     let words: Vec<(f64, String)> = record(&execution);
     assert!(words.contains(&(6.0, "ARM=IN by the world".to_owned())), "{words:?}");
-    assert!(words.contains(&(7.0, "Battery is at 150 by the world".to_owned())), "{words:?}");
+    assert!(words.contains(&(7.0, "Battery=150 by the world".to_owned())), "{words:?}");
     assert_eq!(execution.plans.len(), 2);
     for executed in &execution.plans {
         let (network, plan) = (&executed.network, &executed.plan);

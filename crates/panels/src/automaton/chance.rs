@@ -13,7 +13,7 @@ use workbench::state::program_chance::{MAX_RUNS, MAX_STEPS_OF_RUN, ProgramChance
 
 use super::components::percent;
 use super::title;
-use crate::Context;
+use crate::{Context, counted};
 
 /// So many faults, and so many locations, are listed.
 const MAX_LISTED: usize = 8;
@@ -157,7 +157,7 @@ fn faults(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
     Grid::new("automaton-faults").num_columns(3).striped(true).show(ui, |ui| {
         for (name, tally) in faults.into_iter().take(MAX_LISTED) {
             ui.label(name.as_str());
-            ui.label(format!("{} ×", tally.runs));
+            ui.label(counted(tally.runs, "run"));
             ui.label(format!("{} reached the end", percent(tally.reached as f64 / tally.runs as f64)));
             ui.end_row();
         }

@@ -5,8 +5,12 @@ use theme::{Tokens, size};
 
 /// Writes along the lower edge what the signs mean, as much of it as there is room for.
 pub(super) fn legend(painter: &egui::Painter, panel: Rect, tokens: &Tokens) {
-    let parts =
-        ["● active", "double border: initially active", "overbar: not known to hold", "dashed arrow: then"];
+    let parts = [
+        "● active",
+        "double border: initially active",
+        "overbar: not known to hold",
+        "dashed arrow: next part of a sequence",
+    ];
     let font = FontId::proportional(size::SMALL);
     let color = tokens.text_faint;
     let mut at = panel.left_bottom() + vec2(8.0, -6.0);

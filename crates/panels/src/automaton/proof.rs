@@ -15,7 +15,7 @@ use crate::{Context, counted};
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    title(ui, context, "Proof", "every run, with all faults and all random choices");
+    title(ui, context, "Proof", "all runs with at most the maximum faults, and all random choices");
     ask(ui, context, commands);
     let proof = &context.state.automaton.proof;
     if proof.is_running() {

@@ -194,7 +194,7 @@ fn names(network: &Network, nodes: &[NodeId]) -> Vec<String> {
     let named: Vec<&NodeId> = nodes.iter().filter(is_event).collect();
     let mut names: Vec<String> = named.iter().take(2).map(|&&node| node_name(network, node)).collect();
     if let Some(last) = names.last_mut().filter(|_| named.len() > 2) {
-        last.push_str(&format!(" +{}", named.len() - 2));
+        last.push_str(&format!(" and {} more", named.len() - 2));
     }
     names
 }

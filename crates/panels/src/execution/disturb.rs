@@ -58,7 +58,7 @@ impl Disturb {
             moment.under_way.iter().chain(&moment.holding).chain(&moment.to_come).collect();
         let unit = context.snapshot.map(|snapshot| time_text::unit(snapshot.program.options.time_unit));
         if !all.is_empty() {
-            section(ui, context, "Disturbances", "from the current time");
+            section(ui, context, "Disturbances", "apply from the current time");
             ui.horizontal(|ui| {
                 let name = ui.label(RichText::new("Delay by").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);

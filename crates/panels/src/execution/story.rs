@@ -2,7 +2,7 @@
 
 use egui::Color32;
 use exact::Time;
-use executive::Happening;
+use executive::{Happening, NEEDED_UNTIL};
 use snapshot::Execution;
 use theme::Tokens;
 use theme::icon::Icon;
@@ -10,6 +10,7 @@ use workbench::state::execution::has_come;
 use workbench::time_text;
 
 use crate::counted;
+use crate::review::capital::sentence;
 
 /// An event of the story that the timeline marks.
 pub(crate) struct Turn {
@@ -40,6 +41,13 @@ impl TurnKind {
     }
 }
 
+/// What broke the plan, and why the run stopped: that says until when what was needed.
+fn sentences(broke: &str, second: &str) -> String {
+    let first = broke.split(NEEDED_UNTIL).next().unwrap_or(broke);
+    let end = if second.ends_with('.') { "" } else { "." };
+    format!("{first}. {}{end}", sentence(second))
+}
+
 /// The turns of a run up to a time, in order.
 pub(crate) fn turns(run: &Execution, until: f64) -> Vec<Turn> {
     let mut found = Vec::new();
@@ -60,7 +68,7 @@ pub(crate) fn turns(run: &Execution, until: f64) -> Vec<Turn> {
             Happening::Stopped { reason } => {
                 // A violation that ends the run stops it with its own reason.
                 let broke = because.take().filter(|broke| broke != reason);
-                because = Some(broke.map_or_else(|| reason.clone(), |broke| format!("{broke}. {reason}")));
+                because = Some(broke.map_or_else(|| reason.clone(), |broke| sentences(&broke, reason)));
                 (TurnKind::Stopped, format!("Stopped safely at {at}"))
             }
             Happening::Finished => {

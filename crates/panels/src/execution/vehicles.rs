@@ -32,7 +32,7 @@ impl Vehicles {
         }
         let unit = time_text::unit(snapshot.program.options.time_unit);
         let muted = context.tokens.text_muted;
-        section(ui, context, "Vehicles and obstacles", "during a traverse");
+        section(ui, context, "Vehicles and obstacles", "apply only during a traverse");
         ui.horizontal_wrapped(|ui| {
             let name = ui.label(RichText::new("Slow to").color(muted)).id;
             let field = DragValue::new(&mut self.percent).range(1.0..=99.0).speed(0.5).max_decimals(0);

@@ -102,12 +102,8 @@ pub(crate) fn prose<'a>(context: &'a Context<'_>) -> Prose<'a> {
 /// Opens what a link leads to: a term, or a place of the manual.
 pub(crate) fn follow_link(link: Option<String>, here: &str, commands: &mut CommandSender) {
     let Some(link) = link else { return };
-    let term = Glossary::get().linked(&link).and_then(|term| term.names.first());
-    let target = match term {
-        Some(_) => {
-            let names = Glossary::get().linked(&link).map(|term| term.names.join(", ")).unwrap_or_default();
-            manual::page_named("glossary").map(|page| (page.name, markdown::anchor(&names)))
-        }
+    let target = match Glossary::get().linked(&link) {
+        Some(term) => Some((manual::GLOSSARY, markdown::anchor(&term.heading()))),
         None => manual::target(&link, here),
     };
     if let Some((page, section)) = target {

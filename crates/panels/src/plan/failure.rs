@@ -88,12 +88,12 @@ fn show_fixes(
     }
     let edited = last_edited(context);
     offers.sort_by_key(|offer| !offer.span.zip(edited).is_some_and(|(span, edited)| meet(span, edited)));
-    section(ui, context, "Suggested fixes", "any one of these works; each has been verified");
+    section(ui, context, "Suggested fixes", "Apply any one; Enroute verified each");
     for offer in offers {
         ui.horizontal(|ui| {
             icon::label(ui, Icon::Fix, context.tokens.accent);
             let can_apply = (offer.is_of_gap || offer.edits.is_some()) && !context.is_stale;
-            let button = ui.add_enabled(can_apply, egui::Button::new(offer.label).wrap());
+            let button = ui.add_enabled(can_apply, egui::Button::new(sentence(offer.label)).wrap());
             let button = button.accessible_name(format!("Fix: {}", offer.label));
             // The gap's fix reads the whole text, so it is only computed when it is applied.
             if button.clicked()
@@ -156,7 +156,7 @@ fn show_reason(
             format!("{kind} with {}", choices.join(", "))
         };
         ui.label(RichText::new(heading).color(tokens.threat));
-        ui.label(&reason.message);
+        ui.label(sentence(&reason.message));
         show_run(ui, context, network, reason);
         if !reason.cycle.is_empty() {
             show_cycle(ui, context, network, reason);

@@ -7,11 +7,12 @@ mod windows;
 use egui::{RichText, ScrollArea, Ui};
 use theme::icon::{self, Icon};
 use theme::space;
-use tpn::{LabelId, Network, Plan};
+use tpn::{Extent, LabelId, Network, Plan};
 use workbench::command::{Command, CommandSender};
 use workbench::state::{Selection, Status};
 
 use crate::counted;
+use crate::search::kind_name;
 use crate::{Context, Panel, show_empty};
 
 /// Lists of more rows are made as far as they are on screen.
@@ -194,8 +195,10 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &snapshot::Plannin
             ui.label(RichText::new("Not checked yet.").color(tokens.text_muted));
         }
     });
+    // The search panel may show another one.
+    let search = kind_name(context.state.settings.plan.planner());
     let tried = counted(stats.expanded, "alternative");
-    let effort = format!("{tried} tried, {}", counted(stats.conflicts, "failure"));
+    let effort = format!("{search}: {tried} tried, {}", counted(stats.conflicts, "failure"));
     ui.label(RichText::new(effort).small().color(tokens.text_muted));
     for violation in planning.verdict.iter().flat_map(|verdict| &verdict.violations) {
         let message = context.readable(&violation.message);
@@ -239,7 +242,8 @@ fn show_choices(
                 let text = if is_taken {
                     RichText::new(text).color(context.tokens.text)
                 } else {
-                    RichText::new(format!("instead of {text}")).color(context.tokens.text_muted)
+                    RichText::new(format!("instead of {}", tpn::other_choice(&text)))
+                        .color(context.tokens.text_muted)
                 };
                 let selection = Selection::Alternative(choice.decision, alternative);
                 selectable_row(ui, context, &selection, text, commands);
@@ -251,12 +255,21 @@ fn show_choices(
 /// Whose condition an interval is: an activity, or the assertion that is written.
 fn owner(network: &Network, label: LabelId) -> String {
     let owner = network.labels.get(label.index()).and_then(|it| network.occurrences.get(it.owner?.index()));
-    owner.map_or_else(|| "the mission".to_owned(), |owner| network.readable(&owner.name))
+    let unowned = if is_initial(network, label) { "initial value" } else { "the mission" };
+    owner.map_or_else(|| unowned.to_owned(), |owner| network.readable(&owner.name))
+}
+
+/// Returns whether an interval is of the value that a variable has at the start.
+fn is_initial(network: &Network, label: LabelId) -> bool {
+    network.labels.get(label.index()).is_some_and(|it| it.extent == Extent::Initial)
 }
 
 /// A condition with its owner; an assertion that is written says it itself.
 fn condition(network: &Network, label: LabelId) -> String {
     let text = network.labels.get(label.index()).map_or("", |it| &it.text);
+    if is_initial(network, label) {
+        return format!("{text} (initial value)");
+    }
     let owner = owner(network, label);
     if owner.contains(text) { owner } else { format!("{text} of {owner}") }
 }

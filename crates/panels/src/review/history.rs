@@ -75,7 +75,7 @@ pub(super) fn show(
             if save.on_hover_text("Save the history with its digests as JSON").clicked() {
                 commands.send(Command::Review(ReviewCommand::SaveRecord));
             }
-            let open = ui.button("Add from file…");
+            let open = ui.button("Merge from file…");
             if open.on_hover_text("Verify a history file and merge it into this one").clicked() {
                 commands.send(Command::Review(ReviewCommand::OpenRecord));
             }
@@ -126,9 +126,11 @@ fn show_entry(
             }
         });
         let words = match &entry.act {
-            Act::Acknowledge { line, text } => format!("{}: {text}", super::capital::sentence(&line.text)),
+            Act::Acknowledge { line, text } => {
+                format!("{}\nReason: {text}", super::capital::sentence(&line.text))
+            }
             Act::Waive { line, text, until } => {
-                format!("{}: {text} (until {until})", super::capital::sentence(&line.text))
+                format!("{}\nReason: {text} (until {until})", super::capital::sentence(&line.text))
             }
             act => act.text().to_owned(),
         };

@@ -42,7 +42,7 @@ impl Keys {
         indented(ui, |ui| {
             row::muted_word(
                 ui,
-                "Signatures of these people count. Compare fingerprints before you trust a key.",
+                "Enroute accepts signatures only from these people. Compare fingerprints before you trust a key.",
             );
             if let Some(reason) = context.state.keys.unkept() {
                 let text = format!("Keys not saved: {reason}. Save your key to a file.");
@@ -75,10 +75,11 @@ impl Keys {
         indented(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.label(strong(person.name.as_str()));
-                let whose = if is_own { ", your key" } else { "" };
-                let print =
-                    ui.label(RichText::new(format!("{}{whose}", person.key.fingerprint())).monospace());
+                let print = ui.label(RichText::new(person.key.fingerprint()).monospace());
                 print.on_hover_text(person.key.as_str());
+                if is_own {
+                    row::muted_word(ui, "(your key)");
+                }
                 let named = |label: &str| format!("{label} {}", person.name);
                 if is_own && ui.button("Save key…").accessible_name(named("Save key…")).clicked() {
                     commands.send(Command::Review(ReviewCommand::SaveOwnKey(person.name.clone())));

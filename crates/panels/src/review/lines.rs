@@ -73,11 +73,7 @@ pub(super) fn choices(
         line(ui, list, Section::Choices, index, &choice.line, people, commands);
         for alternative in &choice.alternatives {
             let is_said = alternative.text.starts_with(alternative.name.trim_end_matches(')'));
-            let what = if is_said {
-                alternative.text.clone()
-            } else {
-                format!("{}: {}", alternative.name, alternative.text)
-            };
+            let what = if is_said { &alternative.text } else { &alternative.name };
             let text = format!("{what}\n{}", sentence(&alternative.fate.sentence()));
             let name = format!("{}={}", choice.name, alternative.number);
             let is_taken = alternative.fate == Fate::Taken;

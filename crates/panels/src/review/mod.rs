@@ -216,7 +216,7 @@ fn section_note(statuses: &[Status], section: Section) -> String {
             let words = match status {
                 Status::Attention if count == 1 => "needs attention",
                 Status::Attention => "need attention",
-                Status::Information => "for information",
+                Status::Information => "informational",
                 Status::Failed | Status::Passed => status.name(),
             };
             (count > 0).then(|| format!("{count} {words}"))

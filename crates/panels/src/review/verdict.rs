@@ -70,8 +70,7 @@ pub(super) fn show(
             let need = if attention == 1 { "needs" } else { "need" };
             let information = review.count(Status::Information);
             let counts = format!(
-                "{had}{passed} passed, {attention} {need} attention, {failed} failed; {information} for \
-                 information"
+                "{had}{passed} passed, {attention} {need} attention, {failed} failed; {information} informational"
             );
             ui.label(RichText::new(counts).color(tokens.text));
             if !is_stale {
@@ -146,7 +145,7 @@ fn board(ui: &mut Ui, context: &Context<'_>, standing: &Standing<'_>) {
     ui.horizontal_wrapped(|ui| {
         icon::label(ui, sign, color);
         ui.label(strong(format!("Plan: {}", standing.status.name())).color(color));
-        ui.label(RichText::new(standing.seats_in_words()).color(tokens.text));
+        ui.label(RichText::new(format!("Approvals: {}", standing.seats_in_words())).color(tokens.text));
     });
     if let (PlanStatus::Lapsed, Some((last, why))) = (standing.status, standing.lapsed) {
         let text = format!("{} approved this plan on {}. Since then, {why}.", who(last), moment(&last.time));

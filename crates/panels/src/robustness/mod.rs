@@ -2,6 +2,7 @@
 
 use egui::accesskit;
 use egui::{DragValue, Grid, ProgressBar, RichText, ScrollArea, Ui};
+use exact::grouped;
 use snapshot::Robustness;
 use snapshot::robustness::{Others, Traverses};
 use theme::{size, space, strong, structure};
@@ -74,7 +75,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
     if chance.is_running() {
         let share = chance.runs_made() as f32 / chance.settings.runs.max(1) as f32;
-        let text = format!("{} of {} runs", chance.runs_made(), chance.settings.runs);
+        let text = format!("{} of {} runs", grouped(chance.runs_made()), grouped(chance.settings.runs));
         ui.add(ProgressBar::new(share).desired_height(16.0).text(text));
     }
 }
@@ -124,7 +125,8 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Un
             let Some((start, end)) = bounds.filter(|_| is_condition) else { continue };
             let before = uncertainty.withdrawn.get(&occurrence.name).map_or(0.0, |it| it.probability);
             let mut percent = before * 100.0;
-            let label = ui.label(format!("Chance to withdraw {}", network.readable(&occurrence.name))).id;
+            let label =
+                ui.label(format!("Probability of withdrawal: {}", network.readable(&occurrence.name))).id;
             let field = DragValue::new(&mut percent).range(0.0..=100.0).suffix("%").max_decimals(1);
             if ui.add(field).labelled_by(label).changed() {
                 let at = Distribution::Uniform(start.earliest, end.earliest);
@@ -159,13 +161,14 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     ui.label(strong(share).size(size::TITLE * 1.8).color(color));
     let text = format!(
         "of {} runs reach the end (95% confidence: {:.1}% to {:.1}%)",
-        tally.runs,
+        grouped(tally.runs),
         low * 100.0,
         high * 100.0
     );
     ui.label(RichText::new(text).color(tokens.text));
     if tally.runs < robustness.settings.runs && !context.state.chance.is_running() {
-        let text = format!("Stopped after {} of {} runs", tally.runs, robustness.settings.runs);
+        let text =
+            format!("Stopped after {} of {} runs", grouped(tally.runs), grouped(robustness.settings.runs));
         ui.label(RichText::new(text).color(tokens.warning));
     }
     if tally.succeeded_by_replanning > 0 {
@@ -180,8 +183,8 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
             heading(ui, context, ["Event", "Violations", "Stopped runs"]);
             for (name, breaks) in tally.worst_events().into_iter().take(MAX_LISTED) {
                 ui.label(cut_to(ui, name, names_width)).on_hover_text(&breaks.example);
-                ui.label(format!("{} ×", breaks.violations));
-                ui.label(format!("{} ×", breaks.stops));
+                ui.label(breaks.violations.to_string());
+                ui.label(breaks.stops.to_string());
                 ui.end_row();
             }
         });

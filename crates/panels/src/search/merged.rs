@@ -222,8 +222,8 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
         ui.label(RichText::new("States entered").small().color(tokens.text_muted));
         for (share, text) in [
             (Share::Both, format!("both: {}", counts.both)),
-            (Share::Only(0), format!("only {}: {}", name(0), counts.only[0])),
-            (Share::Only(1), format!("only {}: {}", name(1), counts.only[1])),
+            (Share::Only(0), format!("{} only: {}", name(0), counts.only[0])),
+            (Share::Only(1), format!("{} only: {}", name(1), counts.only[1])),
         ] {
             let text = one_line::in_one_line(ui, RichText::new(text).small().color(tokens.text));
             if ui.available_size_before_wrap().x < space::L + 26.0 + space::S + text.size().x {

@@ -327,7 +327,7 @@ impl Side {
 }
 
 /// Returns how a search is called on screen.
-fn kind_name(kind: SearchKind) -> &'static str {
+pub(crate) fn kind_name(kind: SearchKind) -> &'static str {
     match kind {
         SearchKind::Chronological => "Chronological",
         SearchKind::ConflictDirected => "Conflict-directed",

@@ -18,7 +18,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
             (true, true) => "; later steps were not recorded",
         };
         let text = format!(
-            "{} recorded{more}. Press . to step, or click a state of the tree.",
+            "{} recorded{more}. Press the period key (.) to step, or click a state in the tree.",
             counted(recording.steps() as u64, "step")
         );
         ui.label(egui::RichText::new(text).color(tokens.text_muted));

@@ -88,7 +88,7 @@ fn show_menu(
         view.height_scale = scale;
     }
     ui.menu_button("Sun", |ui| sun_menu(ui, context, &mut view.sun, commands));
-    ui.menu_button("Effects", |ui| effects_menu(ui, &mut view.effects, savings));
+    ui.menu_button("Visual effects", |ui| effects_menu(ui, &mut view.effects, savings));
 }
 
 /// Where the light comes from.

@@ -272,10 +272,24 @@ fn rules_with_an_unknown_key_wait_for_someone_who_has_seen_them() {
     apart.add(who, Act::Rules { rules: rules.clone() }, &key("Grace"));
     board.record.merge(apart);
     assert!(board.record.unknown_rules().is_some_and(|entry| entry.by == "Eve"));
-    // The rules in force, set again by someone who has, keep the approvals.
+    // A weaker board settles them for its signer only.
     board.say("Chair", Act::Rules { rules: rules.clone() });
+    assert!(board.record.unknown_rules().is_some());
+    let mut ring = KeyRing::default();
+    for name in ["Ada", "Grace", "Chair"] {
+        let secret = (name == "Chair").then(|| key(name));
+        ring.add(Person { secret, ..Person::new(name, key(name)) }).expect("a name");
+    }
+    let mut of_chair = board.record.clone();
+    of_chair.judge(&ring.trust(), NOW);
+    assert_eq!((of_chair.rules(), board.status_of(&of_chair)), (&rules, PlanStatus::Approved));
+    // Rules that are at least as strict settle them for everyone, and so does a reader who requires the rules in force.
+    let mut required = board.record.clone();
+    required.confirm_rules();
+    assert_eq!(board.status_of(&required), PlanStatus::Approved);
+    let four = FlightRules { board: vec![Seat::new("Reviewer", 4)], ..rules };
+    board.say("Grace", Act::Rules { rules: four });
     assert!(board.record.unknown_rules().is_none());
-    assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Approved));
 }
 
 #[test]

@@ -270,7 +270,7 @@ impl Promise {
                 });
                 Some(late.map(|pair| {
                     let [first, then] = pair.map(Time::readable);
-                    format!("the first change ends at {first}, but the next one already at {then}")
+                    format!("the first change ends at {first}, but the next change already at {then}")
                 }))
             }
             Self::Apart(all) => {

@@ -36,6 +36,8 @@ pub struct Finding {
     /// The events between which that is, by name.
     pub names: Vec<String>,
     pub nodes: Vec<NodeId>,
+    /// Where in the network what the rule names is, if the rule is not known to hold: see [`super::super::Line::place`].
+    pub place: String,
 }
 
 /// A stretch of time, counted from the start of the mission.
@@ -80,6 +82,7 @@ impl Finding {
             open: Vec::new(),
             names: Vec::new(),
             nodes: Vec::new(),
+            place: String::new(),
         }
     }
 }

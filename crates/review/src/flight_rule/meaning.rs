@@ -101,7 +101,8 @@ impl<'a> Meaning<'a> {
         let outcome = if is_broken { Outcome::Broken(words) } else { Outcome::Unsure(words) };
         let nodes = nodes.into_iter().map(|(node, _)| node).collect();
         let rule = text.to_owned();
-        let finding = Finding { rule, outcome, applies: joined(applies), breaks, open, names, nodes };
+        let (applies, place) = (joined(applies), String::new());
+        let finding = Finding { rule, outcome, applies, breaks, open, names, nodes, place };
         Some((finding, Some(breach)))
     }
 

@@ -18,6 +18,8 @@ use smol_str::SmolStr;
 use snapshot::Snapshot;
 use tpn::{Network, OccurrenceKind, Plan};
 
+use super::place::place_of_rule;
+
 pub use finding::{Finding, MissionRule, Outcome, Stretch};
 
 /// Holds the plan of a snapshot against rules, one after the other; `stop` says when to leave the others undecided.
@@ -41,7 +43,13 @@ pub fn evaluate_plan(
             Some((network, plan)) => finding(program, network, plan, &rule.rule, stop),
             None => Err(Outcome::NoPlan),
         };
-        findings.push(outcome.unwrap_or_else(|outcome| Finding::without_times(&rule.rule, outcome)));
+        let mut found = outcome.unwrap_or_else(|outcome| Finding::without_times(&rule.rule, outcome));
+        if let Some((network, _)) = planned
+            && matches!(found.outcome, Outcome::Broken(_) | Outcome::Unsure(_) | Outcome::Undecided)
+        {
+            found.place = place_of_rule(network, &rule.rule);
+        }
+        findings.push(found);
     }
     findings
 }

@@ -104,7 +104,7 @@ pub fn alternatives(found: &[(Alternatives, Span)]) -> Option<Diagnostic> {
 /// A branch of the world's that leaves `choices` to the plan; none if it leaves none.
 pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
     let span = choices.first()?.place();
-    let left = choices.iter().map(|it| format!("`{}` leaves it {}", it.name, it.bounds.0));
+    let left = choices.iter().map(|it| format!("`{}` allows {}", it.name, it.bounds.0));
     let message = format!("{WHEN}{}", list(&left.collect::<Vec<_>>()));
     let hint = match choices.iter().find(|choice| !choice.is_finite) {
         Some(endless) => format!(

@@ -13,6 +13,7 @@ use crate::host::{FileKind, HostEvent};
 use crate::library::Mission;
 use crate::limits::too_large;
 use crate::state::AppState;
+use crate::state::review::Waiting;
 
 impl AppState {
     /// Takes in something that happened outside, and computes what depends on it.
@@ -100,11 +101,12 @@ impl AppState {
                 self.maps.let_go(&name);
                 self.writing().take_places(&name, &lines);
             }
-            Response::Review { revision, review } => {
-                if self.reviewing().take(revision, review) {
-                    self.write_report();
-                }
-            }
+            Response::Review { revision, review } => match self.reviewing().take(revision, review) {
+                Some(Waiting::Report) if self.review.current().is_some() => self.write_report(),
+                // Without a review of the plan that is drawn, it is not approved.
+                Some(Waiting::Schedule(form, epoch)) => self.save_schedule(form, &epoch),
+                Some(Waiting::Report) | None => {}
+            },
             Response::Evaluated { token, snapshot } => self.compare.take(token, &snapshot),
             Response::Execution(_) | Response::NotExecuted { .. } => {
                 self.execution.take(answer, revision, &mut self.window);

@@ -11,6 +11,7 @@ use review::PlanStatus;
 use crate::state::AppState;
 use crate::state::documents::ScheduleForm;
 use crate::state::networks::{NetworkForm, network_ending};
+use crate::state::review::Waiting;
 
 /// What the version is called in which the text of the network is kept.
 const VERSION: &str = "Network";
@@ -20,7 +21,7 @@ impl AppState {
     pub(super) fn write_report(&mut self) {
         let Some(review) = self.review.current().cloned() else {
             self.reviewing().run();
-            self.review.wants_report = true;
+            self.review.waiting = Some(Waiting::Report);
             self.window.info("Reviewing first; the report opens when it's done");
             return;
         };
@@ -41,6 +42,18 @@ impl AppState {
 
     /// Writes the schedule of the present plan. `epoch` says when the mission starts, where the form needs it.
     pub(super) fn write_schedule(&mut self, form: ScheduleForm, epoch: &str) {
+        // A schedule says whether its plan is approved, which only a review tells.
+        let has_history = self.review.record().counted().next().is_some();
+        if has_history && self.review.current().is_none() && self.update_with_plan().is_some() {
+            self.reviewing().run();
+            self.review.waiting = Some(Waiting::Schedule(form, epoch.to_owned()));
+            self.window.info("Reviewing first; the schedule is saved when it's done");
+        } else {
+            self.save_schedule(form, epoch);
+        }
+    }
+
+    pub(super) fn save_schedule(&mut self, form: ScheduleForm, epoch: &str) {
         match self.schedule(form, epoch) {
             Ok(text) => {
                 if !epoch.is_empty() {

@@ -29,7 +29,7 @@ pub struct Execution {
     /// How the whole run ends.
     #[cfg_attr(test, ts(type = "\"finished\" | \"stopped\""))]
     pub ending: Ending,
-    /// Whether a newer run is being worked out.
+    /// Whether Enroute is simulating a newer run.
     pub is_working: bool,
     pub time: f64,
     pub replans: usize,
@@ -53,7 +53,7 @@ pub struct Deadline {
     pub time: Time,
 }
 
-/// What many runs with chance came to.
+/// The results of Monte Carlo runs.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -62,33 +62,33 @@ pub struct Robustness {
     pub runs: u64,
     pub is_running: bool,
     pub probability: f64,
-    /// The 95 % confidence interval.
+    /// The 95% confidence interval.
     pub interval: [f64; 2],
     /// The events that broke plans, the worst first.
     pub worst: Vec<String>,
 }
 
-/// How the passed lines of the present review were tried.
+/// The search for counterexamples of the passed items of the present review.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Contradiction {
     pub is_running: bool,
-    /// How many schedules and runs have been tried, and how many are to be; `null` unless some are being tried.
+    /// How many schedules and runs have been tried, of how many; `null` unless a search is running.
     #[cfg_attr(test, ts(type = "[number, number] | null"))]
     pub progress: Option<[u64; 2]>,
     pub items: Vec<TriedItem>,
 }
 
-/// How one line was tried.
+/// The search for a counterexample of one item.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TriedItem {
-    /// The line.
+    /// The item.
     pub text: String,
     #[cfg_attr(test, ts(type = "\"survived\" | \"contradicted\" | \"not-tried\""))]
     pub status: Verdict,
-    /// How it came out, in one sentence.
+    /// The result, in one sentence.
     pub outcome: String,
 }
 
@@ -98,17 +98,17 @@ pub struct TriedItem {
 #[serde(rename_all = "camelCase")]
 pub struct RuleProofs {
     pub is_running: bool,
-    /// How many rules are answered, and how many are to be; `null` unless some are being proven.
+    /// How many rules have a verdict, of how many; `null` unless a proof is running.
     #[cfg_attr(test, ts(type = "[number, number] | null"))]
     pub progress: Option<[usize; 2]>,
     pub rules: Vec<ProvenRule>,
 }
 
-/// What was found of one rule.
+/// The result for one rule.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ProvenRule {
-    /// What it says.
+    /// The text of the rule.
     pub rule: String,
     #[cfg_attr(
         test,
@@ -117,7 +117,7 @@ pub struct ProvenRule {
         )
     )]
     pub verdict: &'static str,
-    /// In one sentence.
+    /// The result, in one sentence.
     pub outcome: String,
 }
 
@@ -128,7 +128,7 @@ pub struct Pinned {
     pub events: BTreeMap<String, f64>,
     #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
     pub windows: Value,
-    /// How the run against the environment stands, if the environment chooses something in this plan.
+    /// The run against the environment, if the environment chooses something in this plan.
     pub run: Option<NatureRun>,
 }
 
@@ -137,7 +137,7 @@ pub struct Pinned {
 #[serde(rename_all = "camelCase")]
 #[cfg_attr(test, derive(TS))]
 pub struct NatureRun {
-    /// The present.
+    /// The present time.
     pub now: f64,
     /// What happened, in the order of time.
     pub acts: Vec<Act>,
@@ -150,14 +150,14 @@ pub struct NatureRun {
     pub next: Option<Act>,
 }
 
-/// What someone does.
+/// An act of the executive or of the environment.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Act {
     pub time: f64,
-    /// What happens at that instant.
+    /// The events at that instant.
     pub events: Vec<String>,
-    /// The duration that the environment ends there; otherwise the executive acts.
+    /// The duration that the environment ends there; `null` if the executive acts.
     pub nature: Option<String>,
 }
 
@@ -168,7 +168,7 @@ pub struct Waiting {
     pub event: String,
     /// The duration whose end it waits for.
     pub nature: String,
-    /// It waits no longer than until then.
+    /// The time until which it waits at most.
     pub until: f64,
 }
 

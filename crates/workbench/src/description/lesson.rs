@@ -15,14 +15,14 @@ use crate::state::lesson::Prediction;
 pub struct Lessons {
     /// The names of the course's lessons, in order.
     pub course: Vec<&'static str>,
-    /// Stops whose questions were answered rightly: `negative-cycle/2`.
+    /// Steps whose questions the user answered correctly: `negative-cycle/2`.
     pub learned: Vec<String>,
-    /// Whether the panels stand as the lesson wants them.
+    /// Whether the panels are arranged for the lesson.
     pub beside: bool,
     pub open: Option<OpenLesson>,
 }
 
-/// The lesson that is open, at its stop.
+/// The open lesson, at its current step.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -33,16 +33,16 @@ pub struct OpenLesson {
     pub stop: usize,
     pub stops: usize,
     pub stop_title: String,
-    /// Whether what the stop shows is still worked out.
+    /// Whether Enroute is still calculating what the step shows.
     pub is_due: bool,
-    /// What the stop says, without its looks.
+    /// The text of the step, without its format.
     pub prose: String,
     pub question: Option<Question>,
-    /// What is wrong in the lesson's file, by line.
+    /// The errors in the lesson's file, by line.
     pub errors: Vec<LessonMistake>,
 }
 
-/// What a stop asks.
+/// The question of a step.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -51,15 +51,15 @@ pub struct Question {
     pub kind: &'static str,
     pub text: String,
     pub choices: Vec<String>,
-    /// What was answered last; of a prediction, the last one that has been shown.
+    /// The last answer; of a prediction, the last one whose result has been shown.
     pub given: Option<String>,
-    /// Whether that was right; of a task, whether it is done.
+    /// Whether that answer is right; of a task, whether it is done.
     pub is_right: Option<bool>,
-    /// What was predicted at this stop, if that is asked for.
+    /// The predictions at this step, if the step asks for them.
     pub predictions: Option<PredictionCounts>,
 }
 
-/// How often someone predicted what came.
+/// The number of predictions, and of right ones.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -70,7 +70,7 @@ pub struct PredictionCounts {
     pub is_over: bool,
 }
 
-/// Something wrong in a lesson.
+/// An error in a lesson.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct LessonMistake {
@@ -79,7 +79,7 @@ pub struct LessonMistake {
     pub message: String,
 }
 
-/// The manual as it is looked at.
+/// The open page of the manual, and its search.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Manual {
@@ -87,7 +87,7 @@ pub struct Manual {
     pub page: Option<&'static str>,
     pub section: String,
     pub query: String,
-    /// Where what is looked for stands: `page#section`.
+    /// The sections that contain the query: `page#section`.
     pub found: Vec<String>,
 }
 

@@ -13,13 +13,13 @@ use crate::state::AppState;
 pub struct Library {
     /// The id of the open mission; `null` for an original that no one has edited.
     pub open: Option<String>,
-    /// Those changed last first, without the deleted ones.
+    /// The missions without the deleted ones, the last changed one first.
     pub missions: Vec<KeptMission>,
-    /// How many deleted missions can be brought back.
+    /// How many deleted missions can be restored.
     pub deleted: usize,
-    /// How many things are kept that cannot be read.
+    /// How many saved items are unreadable.
     pub unreadable: usize,
-    /// Whether missions are kept beyond the end of this run.
+    /// Whether missions are saved beyond the end of this run.
     #[cfg_attr(test, ts(type = "\"opening\" | \"kept\" | \"until-closed\" | \"latest-only\" | \"nothing\""))]
     pub keeping: &'static str,
 }

@@ -41,8 +41,7 @@ pub use self::review::Review;
 pub use self::search::Search;
 pub use self::terrain::{Terrain, Vehicle};
 
-/// Everything the page shows. What was worked out belongs to `shownRevision`, which is `revision` once `status` is not
-/// `working`.
+/// Everything the page shows. All results belong to `shownRevision`, which is `revision` once `status` is not `working`.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -50,7 +49,7 @@ pub struct State {
     /// Counts the edits of the text.
     #[cfg_attr(test, ts(type = "number"))]
     pub revision: u64,
-    /// The revision that was last answered.
+    /// The last revision for which there is an answer.
     #[cfg_attr(test, ts(type = "number | null"))]
     pub answered_revision: Option<u64>,
     /// The revision of what is shown.
@@ -63,7 +62,7 @@ pub struct State {
         )
     )]
     pub status: &'static str,
-    /// Whether what is shown is of an older text.
+    /// Whether the page shows an answer to an older text.
     pub is_stale: bool,
     /// The name of the open mission.
     pub mission: String,
@@ -80,10 +79,10 @@ pub struct State {
     pub tpn: Option<NetworkSize>,
     #[cfg_attr(test, ts(type = "Plan | null"))]
     pub plan: Option<Value>,
-    /// What no plan is better than, where the plan is not known to be optimal: in the first goal that is not settled.
+    /// No plan is better than this value in the first undecided goal, if the plan is not known to be optimal.
     #[cfg_attr(test, ts(type = "Time | null"))]
     pub bound: Option<Value>,
-    /// What the independent checker says of the plan.
+    /// The verdict of the independent checker on the plan.
     pub verdict: Option<Verdict>,
     /// Why there is no plan.
     pub failure: Option<Failure>,
@@ -91,7 +90,7 @@ pub struct State {
     pub lesson: Lessons,
     pub manual: Manual,
     pub review: Review,
-    /// What the mission is compared with.
+    /// The comparison of the mission with another one.
     pub compare: Option<Comparison>,
     pub search: Search,
     /// The run of a control program; `null` for a mission.
@@ -106,13 +105,13 @@ pub struct State {
     /// The range of times that is selected on the timeline.
     pub time_range: Option<[f64; 2]>,
     pub pinned: Option<Pinned>,
-    /// The run that is watched in the Execute workspace.
+    /// The run in the Execute workspace.
     pub execution: Option<Execution>,
-    /// What many runs with chance came to; `null` until runs were made.
+    /// The results of Monte Carlo runs; `null` before the first run.
     pub robustness: Option<Robustness>,
-    /// How the passed lines of the review were tried; `null` until some were.
+    /// The search for counterexamples of the passed items of the review; `null` before the first one.
     pub contradiction: Option<Contradiction>,
-    /// Which flight rules hold in every plan; `null` until some were proven.
+    /// Which flight rules hold in every plan; `null` before the first proof.
     pub rule_proofs: Option<RuleProofs>,
     #[cfg_attr(test, ts(type = "{ kind: string; name: string | null; id: unknown } | null"))]
     pub selection: Value,
@@ -129,7 +128,7 @@ pub struct State {
     pub timings: Timings,
 }
 
-/// Something to tell the author about a place of the text.
+/// An error, a warning or a note about a place of the text.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Diagnostic {
@@ -153,7 +152,7 @@ pub struct Span {
     pub column: u32,
 }
 
-/// Where the caret is and where its selection began, in bytes.
+/// Where the cursor is (`head`) and where its selection starts (`anchor`), in bytes.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Caret {
@@ -171,7 +170,7 @@ pub struct NetworkSize {
     pub occurrences: usize,
 }
 
-/// What the independent checker says of a plan.
+/// The verdict of the independent checker on a plan.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Verdict {
@@ -199,7 +198,7 @@ pub struct Reason {
     pub message: String,
 }
 
-/// What the mission is compared with.
+/// The comparison of the mission with another one.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Comparison {
@@ -219,7 +218,7 @@ pub struct Timings {
     pub total: f64,
     /// The app's own code in the last frame.
     pub frame: f64,
-    /// All that the frame before took on the page's thread.
+    /// The whole time of the previous frame on the page's thread.
     pub frame_with_shell: Option<f64>,
     /// The app's code in the frame that first shows the answer to the present text; `null` until then.
     pub answer_frame: Option<f64>,

@@ -13,20 +13,20 @@ use ts_rs::TS;
 use crate::state::automaton::{AutomatonState, PlantMoment, Program};
 use crate::state::program_chance::ProgramChanceState;
 
-/// So many of the most likely states are told.
+/// The description has at most this number of states, the most likely ones.
 const MAX_BELIEVED: usize = 64;
 
-/// How a control program stands at the step that is looked at.
+/// A run of a control program at the current step.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct ProgramRun {
-    /// The steps taken before this moment.
+    /// The number of steps before this moment.
     pub step: usize,
-    /// All steps that were taken.
+    /// The number of all steps of the run.
     pub steps: usize,
     pub locations: usize,
-    /// The labels of what is marked.
+    /// The labels of the marked locations.
     pub marked: Option<Vec<String>>,
     /// The goals that the marked locations assert.
     pub goals: Option<Vec<String>>,
@@ -35,9 +35,9 @@ pub struct ProgramRun {
     pub can_step: bool,
     pub is_playing: bool,
     pub trouble: Option<String>,
-    /// How likely the program is to reach its end; `null` until many runs were made of the present text.
+    /// How likely the program is to reach its end; `null` before Monte Carlo runs of the present text.
     pub chance: Option<ProgramChance>,
-    /// What holds in all runs; `null` until it was asked of the present text.
+    /// Which properties hold in all runs; `null` before a proof for the present text.
     pub proof: Option<ProgramProof>,
     pub plant: Option<PlantState>,
 }
@@ -60,12 +60,12 @@ pub struct ProgramChance {
     #[cfg_attr(test, ts(type = "number"))]
     pub reached: u64,
     pub probability: f64,
-    /// The 95 % confidence interval of the probability.
+    /// The 95% confidence interval of the probability.
     pub interval: [f64; 2],
     pub mean_steps: f64,
 }
 
-/// What holds in all runs of a program, or why nothing can be proven.
+/// Which properties hold in all runs of a program, or why Enroute can prove none.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -73,7 +73,7 @@ pub struct ProgramProof {
     pub is_running: bool,
     pub states: usize,
     pub trouble: Option<String>,
-    /// Why not all states were explored, if that is so.
+    /// Why some states were not explored; `null` if all were.
     pub stopped: Option<String>,
     pub verdicts: Vec<ProgramVerdict>,
 }
@@ -83,13 +83,13 @@ pub struct ProgramProof {
 #[cfg_attr(test, derive(TS))]
 pub struct ProgramVerdict {
     pub property: String,
-    /// `holds`, `broken`, or `open` where no run breaks it but not all were looked at.
+    /// `holds`, `broken`, or `open` if no examined run breaks it but some runs were not examined.
     pub verdict: String,
-    /// In the run that breaks it, the steps in which a component does not do what is nominal, such as `3: EngineA=Failed`.
+    /// In the run that breaks it, the steps in which a component does not behave nominally, such as `3: EngineA=Failed`.
     pub faults: Vec<String>,
 }
 
-/// What is believed and true of a plant; modes and values by component and variable.
+/// The belief about a plant, and its true state; modes and values by component and variable.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -139,7 +139,7 @@ pub enum StateProbability {
 pub struct Asked {
     pub condition: String,
     pub probability: StateProbability,
-    /// Whether it is as probable as the program demands.
+    /// Whether its probability reaches the threshold of the program.
     pub is_known: bool,
 }
 
@@ -153,9 +153,9 @@ pub struct Chosen {
     pub alternative: usize,
     /// The expected sum of rewards of each alternative, as decimals or fractions.
     pub expected: Vec<String>,
-    /// Over how many steps.
+    /// The number of steps that the sum covers.
     pub horizon: u32,
-    /// Whether the program asks for more steps than could be followed.
+    /// Whether the program asks for more steps than the calculation could cover.
     pub is_shortened: bool,
 }
 
@@ -167,7 +167,7 @@ pub struct Unachievable {
     pub reason: String,
 }
 
-/// The step that is looked at, what is marked there and, with a plant, what is believed, true, observed and commanded;
+/// The current step, what is marked there and, with a plant, what is believed, true, observed and commanded;
 /// nothing if the text is not a control program.
 pub(super) fn program_run(state: &AutomatonState, revision: u64) -> Option<ProgramRun> {
     let program = state.program()?;

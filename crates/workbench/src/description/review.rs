@@ -15,19 +15,19 @@ use crate::state::AppState;
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Review {
-    /// The hash of what was reviewed; `null` before the first review of this mission.
+    /// The hash of the reviewed text, map and seed; `null` before the first review of this mission.
     pub hash: Option<String>,
     /// The hash of the present text, map and seed.
     pub current_hash: Option<String>,
     /// The hash of the reviewed plan; empty without one.
     pub plan_hash: Option<String>,
-    /// Whether the two differ.
+    /// Whether the content, the plan or the search has changed since.
     pub stale: bool,
     pub running: bool,
     #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\" | null"))]
     pub status: Option<Status>,
     pub counts: Option<ReviewCounts>,
-    /// What the mission is held against: see section 16 of the specification.
+    /// The flight rules: see section 16 of the specification.
     #[cfg_attr(
         test,
         ts(
@@ -36,7 +36,7 @@ pub struct Review {
     )]
     pub rules: FlightRules,
     pub items: Vec<ReviewItem>,
-    /// How the plan stands with its board.
+    /// The status of the plan with its board.
     #[cfg_attr(
         test,
         ts(
@@ -44,20 +44,20 @@ pub struct Review {
         )
     )]
     pub plan_status: Option<PlanStatus>,
-    /// Who has to approve, and who has.
+    /// The required approvals, and who has given them.
     pub board: Vec<BoardSeat>,
-    /// What stands in the way of any approval.
+    /// What blocks any approval.
     pub blockers: Vec<String>,
-    /// The latest approval that has not been taken back.
+    /// The latest approval that has not been withdrawn.
     pub signed: Option<SignOff>,
     pub comments: Vec<ReviewComment>,
-    /// Everything that was done, in order.
+    /// All acts, in order.
     pub history: Vec<HistoryEntry>,
     /// The digests of the last entries of the history.
     pub heads: Vec<String>,
-    /// Why a review that was kept for this mission is kept aside and not used, if one is.
+    /// Why a saved review of this mission was set aside and is not used, if there is one.
     pub aside: Option<String>,
-    /// Why the history is not kept beyond this visit, if it is not.
+    /// Why the history is not saved beyond this visit; `null` if it is saved.
     pub unkept: Option<String>,
     /// The waivers that count, oldest first.
     pub waivers: Vec<ReviewWaiver>,
@@ -65,13 +65,13 @@ pub struct Review {
     pub people: Vec<ReviewPerson>,
 }
 
-/// An item that may be as it is until some day.
+/// A waiver of an item until some day.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewWaiver {
     /// The entry of the history.
     pub id: String,
-    /// What the item says.
+    /// The text of the item.
     pub item: String,
     pub reason: String,
     pub by: String,
@@ -92,18 +92,18 @@ pub struct ReviewPerson {
     pub own: bool,
 }
 
-/// How many lines of a review stand how.
+/// How many items of a review have each status.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewCounts {
     pub passed: usize,
     pub attention: usize,
     pub failed: usize,
-    /// Lines that say how things are, with nothing to hold them against.
+    /// Items without a criterion.
     pub information: usize,
 }
 
-/// A line of a review.
+/// An item of a review.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewItem {
@@ -112,18 +112,18 @@ pub struct ReviewItem {
     #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\""))]
     pub status: Status,
     pub text: String,
-    /// What it is held against, and where that comes from.
+    /// Its criterion, with the source of the criterion.
     pub criterion: Option<String>,
     /// The line of its place in the text, from 1.
     pub line: Option<u32>,
-    /// What it is about, by the names of all output.
+    /// Its subjects, by their names in all output.
     pub names: Vec<String>,
-    /// Who acknowledged it as it is, and why it may be so.
+    /// Who acknowledged it, and the reason.
     #[cfg_attr(test, ts(type = "{ by: string; text: string } | null"))]
     pub acknowledged: Option<Acknowledged>,
 }
 
-/// Someone has acknowledged a line.
+/// Someone has acknowledged an item.
 #[derive(Debug, Serialize)]
 pub struct Acknowledged {
     pub by: String,
@@ -135,17 +135,17 @@ pub struct Acknowledged {
 #[cfg_attr(test, derive(TS))]
 pub struct BoardSeat {
     pub role: String,
-    /// How many people have to approve.
+    /// The required number of approvals.
     pub wanted: usize,
     /// Who has approved the present plan.
     pub given: Vec<String>,
 }
 
-/// What someone wrote.
+/// A comment.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewComment {
-    /// What `review.resolve`, `review.reopen` and `review.withdraw` take.
+    /// The argument of `review.resolve`, `review.reopen` and `review.withdraw`.
     pub id: String,
     pub author: String,
     pub role: String,
@@ -154,11 +154,11 @@ pub struct ReviewComment {
     pub about: Option<String>,
     pub text: String,
     pub content_hash: String,
-    /// Whether it is neither resolved nor taken back.
+    /// Whether it is neither resolved nor withdrawn.
     pub open: bool,
 }
 
-/// Something that someone did.
+/// An entry of the history.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -169,9 +169,9 @@ pub struct HistoryEntry {
     pub role: String,
     /// An ISO 8601 time in UTC.
     pub time: String,
-    /// What was done, in words.
+    /// The act, in words.
     pub act: String,
-    /// What was said with it.
+    /// The words of the entry.
     pub text: String,
     /// The entry that it is about.
     pub of: Option<String>,
@@ -179,13 +179,13 @@ pub struct HistoryEntry {
     pub hash: String,
     /// The plan that it is about; empty if none was known.
     pub plan_hash: String,
-    /// Whether someone took it back.
+    /// Whether someone withdrew it.
     pub withdrawn: bool,
     /// The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions.
     pub key: Option<String>,
     #[cfg_attr(test, ts(type = "\"valid\" | \"unknown\" | \"broken\" | \"unsigned\""))]
     pub signature: Signature,
-    /// Why it does not count in spite of its signature, or what else is odd about it.
+    /// Why it does not count in spite of its signature, or another problem with it.
     pub problem: Option<String>,
     /// Whether it counts.
     pub counts: bool,
@@ -193,7 +193,7 @@ pub struct HistoryEntry {
     pub without_effect: Option<String>,
 }
 
-/// Someone has approved a plan.
+/// An approval of a plan.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SignOff {
@@ -203,7 +203,7 @@ pub struct SignOff {
     pub role: String,
     /// The content that was approved.
     pub hash: String,
-    /// Whether the present content, plan or rules are others.
+    /// Whether the content, the plan or the rules have changed since.
     pub stale: bool,
 }
 
@@ -243,7 +243,7 @@ fn seat(seat: &review::board::Approvals<'_>) -> BoardSeat {
     BoardSeat { role: seat.role.to_owned(), wanted: seat.wanted, given }
 }
 
-/// The latest approval that has not been taken back.
+/// The latest approval that has not been withdrawn.
 fn signed(state: &AppState) -> Option<SignOff> {
     let record = state.review.record();
     let (entry, subject) = record.last_approval()?;

@@ -10,23 +10,23 @@ use crate::state::AppState;
 use crate::state::search::{Breakpoints, Counts, Recording, wording};
 use crate::state::selection::node_name;
 
-/// The recorded search and the step that is looked at. While one is, all panels show that step instead of the plan.
+/// The recorded search and its current step. If there is a current step, all panels show it instead of the plan.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Search {
-    /// The step that is shown, from 1; 0 while the plan is shown.
+    /// The current step, from 1; 0 while the panels show the plan.
     pub step: usize,
     /// How many steps are recorded; 0 if none are.
     pub steps: usize,
     pub is_playing: bool,
-    /// Whether stepping and playing pass over what only prepares a key step.
+    /// Whether stepping and playing skip steps that only prepare a key step.
     pub only_key_steps: bool,
     pub steps_per_second: f64,
     /// Where running and playing stop.
     #[cfg_attr(test, ts(type = "Record<\"decision\" | \"failure\" | \"threat\" | \"solution\", boolean>"))]
     pub breakpoints: Breakpoints,
-    /// What the search knew at the step: its choices, links, orderings and windows in the form of a plan.
+    /// The knowledge of the search at the step: its choices, links, orderings and windows in the form of a plan.
     #[cfg_attr(
         test,
         ts(
@@ -49,7 +49,7 @@ pub struct SearchComparison {
     pub searches: Vec<SearchFigures>,
 }
 
-/// How much work a search was, and where it is looked at.
+/// The amount of work of a search, and its current step.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]

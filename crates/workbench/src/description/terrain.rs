@@ -9,7 +9,7 @@ use ts_rs::TS;
 use crate::state::AppState;
 use crate::state::growth::{Planners, Search, Shown};
 
-/// What is done on the terrain.
+/// The tool on the terrain, and what the terrain shows.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Terrain {
@@ -31,11 +31,11 @@ pub struct Terrain {
     pub growth: Option<PathGrowth>,
 }
 
-/// The search for a path that is looked at sample by sample.
+/// The search for a path, sample by sample.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PathGrowth {
-    /// Whose searches are shown.
+    /// The planner whose searches are shown.
     pub planner: &'static str,
     pub leg: usize,
     pub samples: u32,
@@ -49,7 +49,7 @@ pub struct PathGrowth {
     pub searches: Vec<PathSearch>,
 }
 
-/// A search for a path by the sample that is looked at.
+/// A search for a path up to the current sample.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PathSearch {

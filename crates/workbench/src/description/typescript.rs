@@ -13,7 +13,7 @@ use crate::host::RefusalCode;
 /// What has no type of its own below: the times, and documents that the command line writes too.
 const DOCUMENTS: &str = r#"// The page's interface for host pages and tests. Made from the types of the crate `workbench`.
 
-/** A time: a number where it is exact in decimal, otherwise `"p/q"`; `"inf"` is without bound. */
+/** A time: a number if it is exact in decimal, otherwise `"p/q"`; `"inf"` is without bound. */
 export type Time = number | string;
 
 /** A plan; windows are earliest and latest times by event. */
@@ -29,9 +29,9 @@ export interface Plan {
   windows: Record<string, [Time, Time]>;
   /** Uses of resources that planning put in order; with `resources`. */
   uses_ordered?: [string, string][];
-  /** How far each resource is used over all schedules, where the mission has any. */
+  /** The use of each resource over all schedules, if the mission has any. */
   resources?: Record<string, ResourceLevels>;
-  /** What the plan is worth, where the mission counts anything. */
+  /** The cost and the reward of the plan, if the mission counts them. */
   cost?: Time;
   reward?: Time;
   /** The earliest time of the scenario's end. */
@@ -95,17 +95,17 @@ export interface Widget {
 export interface Enroute {
   /** Fulfilled when the front end is drawn and can be driven. */
   readonly ready: Promise<void>;
-  /** Opens an example mission. */
+  /** Open an example mission. */
   open(name: string): void;
-  /** Replaces the whole text, as one undoable edit. */
+  /** Replace the whole text, as one undoable edit. */
   setSource(text: string): void;
-  /** The text as it stands. */
+  /** The current text. */
   source(): string;
-  /** Runs a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
+  /** Run a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
   dispatch(command: string, args?: object): void;
   /** The state as plain data. */
   state(): State;
-  /** Calls back with the state whenever it has changed, after the frame that shows it. Call the returned function to unsubscribe. */
+  /** Call back with the state after each change, after the frame that shows it. Call the returned function to unsubscribe. */
   subscribe(callback: (state: State) => void): () => void;
   /** The widgets of a role whose name or text contains `label`. */
   widgets(role: string, label?: string): Widget[];

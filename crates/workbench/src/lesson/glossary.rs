@@ -22,6 +22,18 @@ pub struct Term {
     pub meaning: Vec<Block>,
 }
 
+impl Term {
+    /// Returns what its heading says: its usual form, with an abbreviation if it has one.
+    pub fn heading(&self) -> String {
+        let (usual, others) = self.names.split_first().expect("every heading has a text");
+        let is_abbreviation = |name: &&String| name.chars().all(|letter| letter.is_ascii_uppercase());
+        match others.iter().find(is_abbreviation) {
+            Some(short) => format!("{usual} ({short})"),
+            None => usual.clone(),
+        }
+    }
+}
+
 /// What the target of a link to a term begins with.
 const SCHEME: &str = "glossary:";
 
@@ -57,6 +69,11 @@ impl Glossary {
     /// The term of this name, in any of its forms.
     pub fn term(&self, name: &str) -> Option<&Term> {
         self.terms.iter().find(|term| term.names.iter().any(|it| it.eq_ignore_ascii_case(name)))
+    }
+
+    /// The term whose heading is in this line of the file.
+    pub fn in_line(&self, line: u32) -> Option<&Term> {
+        self.terms.iter().find(|term| term.line == line)
     }
 
     /// The term that a link leads to, if it leads to one.
@@ -154,6 +171,14 @@ mod tests {
         assert_eq!(links, [("Causal links", "glossary:causal link"), ("link", "glossary:link")]);
         assert_eq!(plain(runs), prose.blocks[0].plain());
         assert_eq!(glossary.linked("glossary:causal link").map(|term| term.meaning.len()), Some(1));
+    }
+
+    #[test]
+    fn a_heading_has_the_usual_form_and_an_abbreviation() {
+        let glossary =
+            Glossary::read("# G\n\n## link, links\nA.\n\n## simple network, SN\nB.\n\n## RMPL\nC.\n");
+        let headings: Vec<String> = glossary.terms.iter().map(Term::heading).collect();
+        assert_eq!(headings, ["link", "simple network (SN)", "RMPL"]);
     }
 
     #[test]

@@ -18,11 +18,11 @@ impl ScheduleForm {
     /// Returns what it is called in dialogs.
     pub const fn title(self) -> &'static str {
         match self {
-            Self::Csv => "CSV schedule",
-            Self::Json => "JSON schedule",
-            Self::OpenMct => "Open MCT plan",
-            Self::Icalendar => "iCalendar",
-            Self::PlanDev => "PlanDev plan",
+            Self::Csv => "Export schedule as CSV",
+            Self::Json => "Export schedule as JSON",
+            Self::OpenMct => "Export to Open MCT",
+            Self::Icalendar => "Export to calendar",
+            Self::PlanDev => "Export to PlanDev",
         }
     }
 

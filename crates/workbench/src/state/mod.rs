@@ -165,6 +165,20 @@ pub struct FrameInfo {
     pub unix_millis: i64,
 }
 
+impl FrameInfo {
+    /// Returns what draws, as people call it; empty if unknown.
+    pub fn renderer_name(&self) -> &str {
+        match self.renderer.as_str() {
+            "webgpu" => "WebGPU",
+            "webgl2" => "WebGL2",
+            "vulkan" => "Vulkan",
+            "metal" => "Metal",
+            "gl" => "OpenGL",
+            other => other,
+        }
+    }
+}
+
 /// The first frame that showed an answer of the planning core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnswerFrame {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use exact::grouped;
 use executive::model_based::ProgramTally;
 use link::{ProgramChance, Request, Response};
 use text_editing::Document;
@@ -155,7 +156,7 @@ impl AutomatonState {
         self.sample_on(document, window);
         let chance = &self.chance;
         if !chance.is_running && chance.tally.runs >= answered.runs {
-            let text = format!("{} runs made", chance.tally.runs);
+            let text = format!("{} runs completed", grouped(chance.tally.runs));
             window.done(text);
         }
     }

@@ -24,6 +24,7 @@ use crate::effect::{Aside, Effect};
 use crate::host::FileKind;
 use crate::state::AppState;
 use crate::state::chance::{ChanceCommand, ChanceState};
+use crate::state::documents::ScheduleForm;
 use crate::state::keys::{KeyChange, KeysState};
 use crate::state::part::Part;
 use crate::state::settings::{PlanSettings, Settings};
@@ -98,8 +99,16 @@ pub struct ReviewState {
     judged_minute: i64,
     /// Random bytes for the first entry of a history that is started here; `None` where the host has no source of such.
     random: Option<[u8; 32]>,
-    /// Whether the report is to be written as soon as there is a review for it.
-    pub(crate) wants_report: bool,
+    /// What is to be written as soon as there is a review for it.
+    pub(crate) waiting: Option<Waiting>,
+}
+
+/// A document whose status needs a review first.
+#[derive(Clone, Debug)]
+pub(crate) enum Waiting {
+    Report,
+    /// With the start of the mission.
+    Schedule(ScheduleForm, String),
 }
 
 /// A review with how it came about.
@@ -235,7 +244,7 @@ impl ReviewState {
     /// The core stopped: what was asked of it does not come.
     pub(crate) fn give_up(&mut self) {
         self.running = None;
-        self.wants_report = false;
+        self.waiting = None;
     }
 
     /// Another mission is open now: forgets the reviews, and sets aside what could not be kept.
@@ -307,17 +316,15 @@ impl Reviewing<'_> {
         self.window.post(Request::Review { update, rules });
     }
 
-    /// Takes a review that was asked for. Returns whether a report was waiting for it.
-    pub(crate) fn take(&mut self, revision: u64, review: Arc<Review>) -> bool {
+    /// Takes a review that was asked for. Returns what was waiting for it.
+    pub(crate) fn take(&mut self, revision: u64, review: Arc<Review>) -> Option<Waiting> {
         // What no one waits for any more may be of another mission.
-        let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else {
-            return false;
-        };
+        let (_, search) = self.review.running.take_if(|running| running.0 == revision)?;
         self.review.done.retain(|it| it.review.content_hash != review.content_hash || it.search != search);
         self.review.done.insert(0, Done { search, review, robustness: None });
         self.review.done.truncate(MAX_DONE);
         self.judge();
-        std::mem::take(&mut self.review.wants_report) && self.review.current().is_some()
+        self.review.waiting.take()
     }
 
     /// Holds every review against the present rules, and against the runs that were made of its content.

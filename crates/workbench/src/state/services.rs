@@ -6,6 +6,7 @@ use rmpl::{Parse, editor};
 use text_editing::{Caret, Document, EditKind, TextCommand, is_name_character};
 
 use crate::dialog::Dialog;
+use crate::sentence;
 use crate::state::editing::{Writing, span_of};
 use crate::state::editor::{Popup, PopupAction, PopupItem, PopupKind};
 use crate::state::folding::Folding;
@@ -123,7 +124,7 @@ impl Writing<'_> {
             touching
                 .flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)))
                 .map(|(problem, fix)| PopupItem {
-                    label: fix.label.replace('`', ""),
+                    label: sentence(&fix.label.replace('`', "")),
                     detail: problem.code.to_string(),
                     kind: None,
                     action: PopupAction::Edit(fix.edits.clone()),

@@ -319,7 +319,8 @@ fn what_lessons_say_of_their_missions_is_computed_and_follows_an_edit() {
     assert!(prose(&app).contains("the spectrum 3."), "{}", prose(&app));
     open(&mut app, "estimation", 1);
     assert!(
-        prose(&app).contains("the first is 99.748%. Both engines work with probability 99.748% of 99.748%")
+        prose(&app)
+            .contains("the first is 99.748%. Both engines work with probability 99.748% · 99.748% = 99.497%")
     );
     open(&mut app, "objectives", 3);
     assert_eq!(because(&app, "objectives", 3), "It is 9. That of the other one is 10.");

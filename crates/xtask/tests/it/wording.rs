@@ -1,8 +1,8 @@
 //! The texts of the interface follow the writing guide: no banned words, and no label, tooltip or message that is too long.
 //!
-//! The texts are those of the sources ([`xtask::texts`]), those of the page's scripts; the help of the command line, as its reference quotes it; and the
-//! documents. To check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with the
-//! reason.
+//! The texts are those of the sources ([`xtask::texts`]), those of the page's scripts; the help of the command line, as its reference quotes it; the
+//! comments of the declarations for host pages; and the documents. To check another crate, add its folder. A word that is right in one place goes
+//! to [`ALLOWED`], with the reason.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,10 +13,8 @@ use xtask::process::root;
 use xtask::texts::{FOLDERS, MORE_FOLDERS, template, texts_in, texts_of};
 
 /// Documents whose prose is not checked, and why.
-const OTHER_DOCUMENTS: [(&str, &str); 2] = [
-    ("key-sentences.md", "made of lessons and messages, which are checked in the sources"),
-    ("specification.md", "definitions in the terms of mathematics"),
-];
+const OTHER_DOCUMENTS: [(&str, &str); 1] =
+    [("key-sentences.md", "made of lessons and messages, which are checked in the sources")];
 
 /// Patterns that no text of the interface contains, and what to write instead. They ignore case.
 const BANNED_IN_THE_INTERFACE: [(&str, &str); 6] = [
@@ -395,14 +393,39 @@ fn documents() -> Vec<(String, String)> {
     found
 }
 
+/// The comments of declarations in TypeScript, each of which is on one line, without code.
+fn comments(declarations: &str) -> Vec<(usize, String)> {
+    let of_line = |(number, line): (usize, &str)| {
+        let line = line.trim();
+        let block = line.strip_prefix("/**").and_then(|rest| rest.strip_suffix("*/"));
+        let words = block.or(line.strip_prefix("//"))?.trim();
+        Some((number + 1, CODE_OR_TARGET.replace_all(words, "").into_owned()))
+    };
+    declarations.lines().enumerate().filter_map(of_line).collect()
+}
+
+#[test]
+fn comments_of_declarations_have_no_code() {
+    let found = comments("// A\n\n/** B `behind` c. */\nexport type D = {\n  /** E. */\n  f: number;\n};\n");
+    let expected = [(1, "A"), (3, "B  c."), (5, "E.")];
+    assert_eq!(found, expected.map(|(line, words)| (line, words.to_owned())));
+}
+
 #[test]
 fn no_document_for_users_has_a_banned_word() {
     // What is true of labels and tooltips is not true of sentences.
     let patterns = patterns(&BANNED).into_iter().filter(|(pattern, _)| !pattern.as_str().contains('^'));
     let patterns: Vec<(Regex, &str)> = patterns.collect();
+    let declarations = "web/enroute.d.ts";
+    let of_declarations = comments(&fs::read_to_string(root().join(declarations)).expect("the declarations"));
+    assert!(of_declarations.len() > 200, "only {} comments", of_declarations.len());
+    let of_documents = documents().into_iter().map(|(name, text)| {
+        let found = paragraphs(&text);
+        (name, found)
+    });
     let mut wrong = Vec::new();
-    for (name, text) in documents() {
-        for (line, words) in paragraphs(&text) {
+    for (name, found) in of_documents.chain([(declarations.to_owned(), of_declarations)]) {
+        for (line, words) in found {
             for (pattern, instead) in patterns.iter().filter(|(pattern, _)| pattern.is_match(&words)) {
                 // The word is in quotes where its meaning is explained.
                 if !words.contains("“nature”") {
@@ -418,8 +441,11 @@ fn no_document_for_users_has_a_banned_word() {
 const MAX_WORDS: usize = 35;
 
 /// Documents with longer sentences, and why.
-const LONG_SENTENCES: [(&str, &str); 2] =
-    [("benchmarks.md", "the conditions of measurements"), ("contracts.md", "formats, for programs")];
+const LONG_SENTENCES: [(&str, &str); 3] = [
+    ("benchmarks.md", "the conditions of measurements"),
+    ("contracts.md", "formats, for programs"),
+    ("specification.md", "definitions, with all their conditions"),
+];
 
 /// The sentences of a document's paragraphs and lists, with the line where each paragraph starts; without tables.
 fn sentences(markdown: &str) -> Vec<(usize, String)> {

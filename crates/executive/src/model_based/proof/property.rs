@@ -177,9 +177,9 @@ impl fmt::Display for Property {
                 write!(f, "{} leads to {}{}", from.text, to.text, limit(within))
             }
             Self::Ends { within } => write!(f, "the program ends{}", limit(within)),
-            Self::GoalsAgree => f.write_str("goals are never inconsistent"),
+            Self::GoalsAgree => f.write_str("goals are always consistent"),
             Self::AllReached => f.write_str("every location can become active"),
-            Self::AllGuardsHold => f.write_str("every condition waited for can become true"),
+            Self::AllGuardsHold => f.write_str("every condition that the program waits for can become true"),
             Self::NoDeadlock => f.write_str("locks do not deadlock"),
         }
     }
