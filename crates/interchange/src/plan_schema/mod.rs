@@ -2,6 +2,8 @@
 
 mod edn;
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 use std::collections::BTreeMap;

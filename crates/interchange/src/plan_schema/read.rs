@@ -402,7 +402,10 @@ impl<'file> Reader<'file> {
         if lower.is_negative() || Bound::Finite(lower) > upper {
             return Err(error("the bounds must satisfy 0 ≤ minimum ≤ maximum"));
         }
-        Ok(Some(((lower, upper), self.reference(uid, "end-node")?)))
+        // Without an end of its own, a constraint is about what lists it, where that has one.
+        let has_end = |object: &Value| object.get("end-node").is_some_and(|end| !end.is_null());
+        let owner = if !has_end(object) && has_end(self.object(from, from)?) { from } else { uid };
+        Ok(Some(((lower, upper), self.reference(owner, "end-node")?)))
     }
 
     /// Narrows the duration of an activity; what cannot be narrowed gets an arc beside it.

@@ -8,7 +8,7 @@ const REACH: usize = 4096;
 const CONVERT: &str = "write it as GeoTIFF, as with `gdal_translate IN OUT.tif`";
 
 /// Beginnings of files, white space before them left out, and what they are.
-const BEGINNINGS: [(&[u8], &str, &str); 17] = [
+const BEGINNINGS: [(&[u8], &str, &str); 18] = [
     (b"Object = IsisCube", "ISIS cube", CONVERT),
     (b"CCSD3ZF", "PDS3 file in an SFDU envelope (as ISIS 2 cubes are)", CONVERT),
     (b"LBLSIZE=", "VICAR image", CONVERT),
@@ -23,6 +23,7 @@ const BEGINNINGS: [(&[u8], &str, &str); 17] = [
     (b"DSRB", "Surfer grid", CONVERT),
     (b"\0\0\0\x0cjP  ", "JPEG 2000 image", CONVERT),
     (b"\xff\xd8\xff", "JPEG image", "JPEG compression changes heights; save the map as PNG or GeoTIFF"),
+    (b"<VRTDataset", "GDAL VRT file", CONVERT),
     (b"LASF", "LAS point cloud", "convert it to a grid, as with `pdal` and its `writers.gdal`"),
     (b"PK\x03\x04", "ZIP archive", "unpack it and open the map inside"),
     (b"\x1f\x8b", "gzip archive", "unpack it and open the map inside"),

@@ -152,7 +152,7 @@ impl FileFormat {
             Some(Self::Tiff)
         } else if starts("ncols") || starts("nrows") {
             Some(Self::AsciiGrid)
-        } else if starts("type") {
+        } else if starts("type") || moving_ai::has_header(bytes) {
             Some(Self::MovingAi)
         } else if starts("PDS_VERSION_ID") {
             Some(Self::Pds)

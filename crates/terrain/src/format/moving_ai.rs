@@ -53,6 +53,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     Ok(Raster::new((width, height), samples, Meaning::Obstacles))
 }
 
+/// Returns whether a text begins with the sizes of a map; some programs leave the line with its type out.
+pub(super) fn has_header(bytes: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(512)]);
+    let lines = start.strip_prefix('\u{feff}').unwrap_or(&start).lines();
+    let mut words = lines.filter_map(|line| line.split_ascii_whitespace().next());
+    [words.next(), words.next(), words.next()] == ["height", "width", "map"].map(Some)
+}
+
 fn size(word: &str) -> Result<u32, FormatError> {
     word.parse().map_err(|_| malformed(format!("`{word}` is not a size")))
 }

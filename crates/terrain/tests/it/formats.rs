@@ -203,6 +203,10 @@ fn a_moving_ai_map_gives_obstacles() {
     assert_eq!((raster.width, raster.height, raster.meaning), (4, 3, Meaning::Obstacles));
     let expected: Vec<bool> = "..@@..@@....".chars().map(|character| character == '@').collect();
     assert_eq!(raster.obstacles(), expected);
+    let without_type = read(b"\n height 3\nwidth 4\nmap\n.G@T\nS.OW\n....\n").unwrap();
+    assert_eq!(without_type, raster);
+    // Anything else about a height is no map.
+    assert_eq!(read(b"height 3\ndepth 4\nmap\n"), Err(FormatError::Unknown));
     let small = read("\u{feff}type octile\nheight 3\nwidth 4\nmap\n.g@t\ns.ow\n....\n".as_bytes()).unwrap();
     assert_eq!(small.obstacles(), expected);
 }
@@ -397,7 +401,7 @@ fn the_missing_constant_of_single_precision_may_have_fewer_digits() {
 #[test]
 fn files_of_other_formats_are_refused_by_name_with_what_to_do() {
     let pds4 = "<?xml version=\"1.0\"?>\n<Product_Observational xmlns=\"http://pds.nasa.gov/pds4/pds/v1\">";
-    let cases: [(&[u8], &str, &str); 8] = [
+    let cases: [(&[u8], &str, &str); 9] = [
         (b"Object = IsisCube\n  Object = Core\n", "ISIS cube", "gdal_translate"),
         (b"CCSD3ZF0000100000001NJPL3IF0PDS200000001 = SFDU_LABEL\r\n", "ISIS 2", "gdal_translate"),
         (pds4.as_bytes(), "PDS4 label", "gdal_translate LABEL.xml"),
@@ -406,6 +410,7 @@ fn files_of_other_formats_are_refused_by_name_with_what_to_do() {
         (b"\0\0\0\x0cjP  \r\n", "JPEG 2000", "gdal_translate"),
         (b"\xff\xd8\xff\xe0", "JPEG", "PNG or GeoTIFF"),
         (b"PK\x03\x04\x14", "ZIP", "unpack"),
+        (b"<VRTDataset rasterXSize=\"20\">", "GDAL VRT", "gdal_translate"),
     ];
     for (bytes, name, advice) in cases {
         let error = read(bytes).unwrap_err();

@@ -7,13 +7,15 @@ enum Value {
     Shorts(Vec<u16>),
     Doubles(Vec<f64>),
     Text(&'static str),
-    Offset(u32),
+    Longs(Vec<u32>),
 }
 
-/// One image: its tags, without those that say where its samples are, and the bytes of its samples.
+/// One image: its tags, without those that say where its samples are, the bytes of its samples, and how many of them are in
+/// each strip or tile; 0 in one that is not stored.
 struct Image {
     tags: Vec<(u16, Value)>,
     samples: Vec<u8>,
+    blocks: Vec<u32>,
 }
 
 const SUBFILE: u16 = 254;
@@ -22,12 +24,16 @@ const COMPRESSION: u16 = 259;
 const INTERPRETATION: u16 = 262;
 const ORIENTATION: u16 = 274;
 const BANDS: u16 = 277;
+const ROWS_PER_STRIP: u16 = 278;
+const TILE_WIDTH: u16 = 322;
+const TILE_LENGTH: u16 = 323;
 const EXTRA: u16 = 338;
 const SAMPLE_FORMAT: u16 = 339;
 const SCALE: u16 = 33_550;
 const TIE_POINTS: u16 = 33_922;
 const MATRIX: u16 = 34_264;
 const KEYS: u16 = 34_735;
+const TEXTS: u16 = 34_737;
 const METADATA: u16 = 42_112;
 const NO_DATA: u16 = 42_113;
 
@@ -36,7 +42,7 @@ impl Image {
     fn bytes(width: u16, samples: &[u8]) -> Self {
         let tags = [(256, width), (257, 2), (BITS, 8), (COMPRESSION, 1), (INTERPRETATION, 1), (BANDS, 1)];
         let tags = tags.into_iter().map(|(tag, value)| (tag, Value::Shorts(vec![value]))).collect();
-        Self { tags, samples: samples.to_vec() }
+        Self { tags, samples: samples.to_vec(), blocks: vec![samples.len() as u32] }
     }
 
     /// 1 2 3 over 4 5 6.
@@ -47,6 +53,12 @@ impl Image {
     fn with(mut self, tag: u16, value: Value) -> Self {
         self.tags.retain(|(other, _)| *other != tag);
         self.tags.push((tag, value));
+        self
+    }
+
+    /// As many bytes in each block; 0 in one that is not stored.
+    fn blocks(mut self, blocks: &[u32]) -> Self {
+        self.blocks = blocks.to_vec();
         self
     }
 
@@ -64,10 +76,17 @@ fn file(images: Vec<Image>, big_endian: bool) -> Vec<u8> {
     bytes.extend(long(0));
     let mut link = 4;
     for mut image in images {
-        let samples_at = bytes.len() as u32;
+        let mut next = bytes.len() as u32;
         bytes.extend(&image.samples);
-        image.tags.push((273, Value::Offset(samples_at)));
-        image.tags.push((279, Value::Offset(image.samples.len() as u32)));
+        let offset = |&length: &u32| {
+            next += length;
+            if length == 0 { 0 } else { next - length }
+        };
+        let offsets = image.blocks.iter().map(offset).collect();
+        let is_tiled = image.tags.iter().any(|(tag, _)| *tag == TILE_WIDTH);
+        let (offsets_tag, lengths_tag) = if is_tiled { (324, 325) } else { (273, 279) };
+        image.tags.push((offsets_tag, Value::Longs(offsets)));
+        image.tags.push((lengths_tag, Value::Longs(image.blocks)));
         image.tags.sort_by_key(|(tag, _)| *tag);
         let mut entries = Vec::new();
         for (tag, value) in &image.tags {
@@ -77,7 +96,7 @@ fn file(images: Vec<Image>, big_endian: bool) -> Vec<u8> {
                     (12, values.len(), values.iter().flat_map(|&it| double(it)).collect())
                 }
                 Value::Text(text) => (2, text.len() + 1, [text.as_bytes(), b"\0"].concat()),
-                Value::Offset(value) => (4, 1, long(*value).to_vec()),
+                Value::Longs(values) => (4, values.len(), values.iter().flat_map(|&it| long(it)).collect()),
             };
             if content.len() > 4 {
                 let place = bytes.len() as u32;
@@ -329,6 +348,120 @@ fn other_compressions_and_pictures_are_refused_by_name() {
     assert!(refusal(Image::bytes(8, &[0, 0]).short(BITS, 1)).contains("samples of 1 bits"));
 }
 
+/// Samples of which NaN is equal to itself.
+fn bits(samples: &[f32]) -> Vec<u32> {
+    samples.iter().map(|sample| sample.to_bits()).collect()
+}
+
+#[test]
+fn blocks_that_a_sparse_file_does_not_store_have_no_data() {
+    const HOLE: f32 = f32::NAN;
+    let strips =
+        |blocks: &[u32], samples: &[u8]| Image::bytes(3, samples).short(ROWS_PER_STRIP, 1).blocks(blocks);
+    for compression in [1, 32_773] {
+        // Three literal bytes of PackBits.
+        let samples = if compression == 1 { &[1, 2, 3][..] } else { &[2, 1, 2, 3] };
+        let length = samples.len() as u32;
+        let image = |blocks: &[u32]| strips(blocks, samples).short(COMPRESSION, compression);
+        let below = read(image(&[length, 0]).with(NO_DATA, Value::Text("9")));
+        assert_eq!(bits(&below.samples), bits(&[1.0, 2.0, 3.0, HOLE, HOLE, HOLE]));
+        let above = read(image(&[0, length]).with(NO_DATA, Value::Text("9")));
+        assert_eq!(bits(&above.samples), bits(&[HOLE, HOLE, HOLE, 1.0, 2.0, 3.0]));
+        // As in GDAL, without a value that stands for no data.
+        assert_eq!(read(image(&[length, 0])).samples, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
+        assert_eq!(read(image(&[0, 0])).samples, [0.0; 6]);
+    }
+    let tile: Vec<u8> = (0..=255).collect();
+    let tiles = |blocks: &[u32]| {
+        let image = Image::bytes(20, &tile).short(TILE_WIDTH, 16).short(TILE_LENGTH, 16).blocks(blocks);
+        read(image.with(NO_DATA, Value::Text("255")))
+    };
+    for (row, samples) in tiles(&[256, 0]).samples.chunks_exact(20).enumerate() {
+        let stored: Vec<f32> = (0..16_u8).map(|column| f32::from(16 * row as u8 + column)).collect();
+        assert_eq!(bits(samples), bits(&[&stored[..], &[HOLE; 4]].concat()));
+    }
+    for (row, samples) in tiles(&[0, 256]).samples.chunks_exact(20).enumerate() {
+        let stored: Vec<f32> = (0..4_u8).map(|column| f32::from(16 * row as u8 + column)).collect();
+        assert_eq!(bits(samples), bits(&[&[HOLE; 16], &stored[..]].concat()));
+    }
+    // Where a mask has no block, nothing is valid.
+    let mask = mask(3, 1, &[0b1010_0000]).short(ROWS_PER_STRIP, 1).blocks(&[1, 0]);
+    let masked = read_all(vec![Image::plain(), mask]).unwrap();
+    assert_eq!(bits(&masked.samples), bits(&[1.0, HOLE, 3.0, HOLE, HOLE, HOLE]));
+}
+
+#[test]
+fn compressed_blocks_that_cannot_be_decoded_are_refused_with_the_reason() {
+    let old = Image::bytes(3, &[0, 1, 2, 3]).short(COMPRESSION, 5);
+    assert!(refusal(old).contains("the order of before TIFF 6"));
+    let mut bytes = file(vec![Image::plain().short(COMPRESSION, 32_773)], false);
+    let entry = bytes.windows(4).position(|it| it == [0x17, 1, 4, 0]).unwrap();
+    bytes[entry + 8..entry + 12].fill(0);
+    let error = read_raster(&bytes, &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("how long its compressed blocks are"), "{error}");
+}
+
+#[test]
+fn what_a_picture_lacks_is_named() {
+    let mut image = Image::plain();
+    image.tags.retain(|(tag, _)| *tag != INTERPRETATION);
+    assert!(refusal(image).contains("PhotometricInterpretation is missing"));
+    let colors = Image::bytes(1, &[0; 6]).short(BANDS, 3).with(BITS, Value::Shorts(vec![8; 3]));
+    let mask = colors.short(SUBFILE, 4).short(INTERPRETATION, 2);
+    let error = read_all(vec![Image::bytes(1, &[1, 4]), mask]).unwrap_err().to_string();
+    assert!(error.contains("its mask has 3 bands"), "{error}");
+    // Bands of which each would fit, but not all.
+    let large = Image::bytes(5000, &[1]).short(257, 5000).short(BANDS, 20);
+    let large = large.with(BITS, Value::Shorts(vec![8; 20])).short(EXTRA, 0);
+    assert!(refusal(large.with(EXTRA, Value::Shorts(vec![0; 19]))).contains("more memory"));
+}
+
+#[test]
+fn the_unit_of_coordinates_is_never_guessed() {
+    let image = |code: u16, key: u16, text: &'static str| {
+        let length = text.len() as u16;
+        let keys = vec![1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, code, key, 34_737, length, 0];
+        let image = Image::plain().with(SCALE, scale(10.0, 10.0)).with(KEYS, Value::Shorts(keys));
+        image.with(TEXTS, Value::Text(text))
+    };
+    let cell_m = |code: u16, key: u16, text: &'static str| read(image(code, key, text)).cell_size_m.unwrap();
+    for meters in [32_601, 32_760, 26_711, 26_911, 25_832, 31_467, 3857, 2154, 3031, 3413, 0, 32_767] {
+        assert_eq!(cell_m(meters, 3073, "a system|"), 10.0, "{meters}");
+    }
+    // Long Island, Oregon and New York: US survey feet and feet.
+    for feet in [2263, 2994, 32_018] {
+        let message = refusal(image(feet, 3073, "a system|"));
+        assert!(message.contains(&format!("EPSG code {feet}")) && message.contains("unit"), "{message}");
+    }
+    assert_eq!(cell_m(2994, 3073, "NAD83(HARN) / Oregon GIC Lambert (m)\nUnits = meters|"), 10.0);
+    let feet = cell_m(2838, 1026, "Projection = Oregon\nUnits = international_FeeT|");
+    assert!((feet - 3.048).abs() < 1e-9, "{feet}");
+    let survey = cell_m(2263, 3073, "GCS Units = degrees|PCS Units = us_survey_feet|");
+    assert!((survey - 12_000.0 / 3937.0).abs() < 1e-9, "{survey}");
+}
+
+#[test]
+fn an_identity_is_no_georeference() {
+    let mut identity = vec![0.0; 16];
+    (0..4).for_each(|axis| identity[5 * axis] = 1.0);
+    // What it says about the third axis does not matter.
+    for height in [1.0, 0.0] {
+        identity[10] = height;
+        let raster = read(Image::plain().with(MATRIX, Value::Doubles(identity.clone())));
+        assert_eq!((raster.samples.as_slice(), raster.cell_size_m, raster.origin_m), (&ROWS[..], None, None));
+    }
+}
+
+#[test]
+fn infinity_stands_for_no_data_in_the_notation_of_windows() {
+    for (text, number) in [("-1.#INF", f32::NEG_INFINITY), ("1.#INF", f32::INFINITY), ("1.#QNAN", f32::NAN)] {
+        let samples = [number.to_le_bytes(), 1.5_f32.to_le_bytes()].concat();
+        let image = Image::bytes(1, &samples).short(BITS, 32).short(SAMPLE_FORMAT, 3);
+        let raster = read(image.with(NO_DATA, Value::Text(text)));
+        assert!(raster.samples[0].is_nan() && raster.samples[1] == 1.5, "{text}");
+    }
+}
+
 #[test]
 fn no_changed_byte_makes_reading_panic() {
     let image = || {
@@ -338,6 +471,8 @@ fn no_changed_byte_makes_reading_panic() {
             .with(KEYS, Value::Shorts(vec![1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002]))
             .with(METADATA, Value::Text("<Item role=\"scale\" sample=\"0\">2</Item>"))
             .with(NO_DATA, Value::Text("6"))
+            .short(ROWS_PER_STRIP, 1)
+            .blocks(&[0, 3])
     };
     for big_endian in [false, true] {
         let bytes = file(vec![image(), mask(3, 1, &[0xff, 0xff])], big_endian);

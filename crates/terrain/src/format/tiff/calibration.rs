@@ -20,7 +20,7 @@ impl Calibration {
     pub fn read(decoder: &mut Decoder<'_>, unit_m: Option<f64>) -> Result<Self, FormatError> {
         let no_data = match text(decoder, Tag::GdalNodata)?.as_deref().map(str::trim) {
             None | Some("") => None,
-            Some(written) => Some(written.parse().map_err(|_| {
+            Some(written) => Some(no_data(written).ok_or_else(|| {
                 malformed(format!("its GDAL_NODATA must be a number, not `{}`", start(written)))
             })?),
         };
@@ -54,6 +54,11 @@ impl Calibration {
         self.no_data = self.no_data.map(|hole| f64::from(hole as f32));
     }
 
+    /// What is stored where a file stores nothing.
+    pub fn stored_nothing(&self) -> f64 {
+        self.no_data.unwrap_or(0.0)
+    }
+
     /// The height of a stored value; NaN where it means that there is none.
     pub fn height_m(&self, stored: f64) -> f32 {
         if self.no_data == Some(stored) {
@@ -61,6 +66,16 @@ impl Calibration {
         } else {
             ((stored * self.scale + self.offset) * self.unit_m) as f32
         }
+    }
+}
+
+/// The number that stands for no data; some programs on Windows write infinity and NaN in their own way.
+fn no_data(written: &str) -> Option<f64> {
+    match written.to_ascii_lowercase().as_str() {
+        "1.#inf" => Some(f64::INFINITY),
+        "-1.#inf" => Some(f64::NEG_INFINITY),
+        "1.#qnan" | "-1.#qnan" | "1.#ind" | "-1.#ind" => Some(f64::NAN),
+        number => number.parse().ok(),
     }
 }
 
@@ -102,7 +117,7 @@ fn attribute<'a>(attributes: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// The text of a tag, to its first NUL.
-fn text(decoder: &mut Decoder<'_>, tag: Tag) -> Result<Option<String>, FormatError> {
+pub(super) fn text(decoder: &mut Decoder<'_>, tag: Tag) -> Result<Option<String>, FormatError> {
     let mut value = ValueBuffer::empty(Type::ASCII);
     let entry = decoder.image_ifd().find_tag_buf(tag, &mut value).map_err(|error| problem(&error))?;
     let bytes = value.as_bytes();

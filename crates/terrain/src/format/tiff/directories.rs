@@ -3,7 +3,7 @@
 use ::tiff::decoder::ifd::Value;
 use ::tiff::tags::{ByteOrder, IfdPointer, PhotometricInterpretation, Tag, Type};
 
-use super::{Decoder, FormatError, malformed, number, open, problem, unsupported};
+use super::{Decoder, FormatError, blocks, malformed, number, open, problem, unsupported};
 
 /// A pyramid halves an image some 25 times at most; each has a mask.
 const MAX_DIRECTORY_COUNT: usize = 128;
@@ -20,13 +20,18 @@ pub(super) fn read_mask(bytes: &[u8], decoder: &mut Decoder<'_>) -> Result<Optio
         return Err(unsupported("its mask and its heights must have the same size"));
     }
     let bits = number(decoder, Tag::BitsPerSample)?.unwrap_or(1);
-    if !matches!(bits, 1 | 8) || number(decoder, Tag::SamplesPerPixel)?.unwrap_or(1) != 1 {
+    let bands = number(decoder, Tag::SamplesPerPixel)?.unwrap_or(1);
+    if bands != 1 {
+        return Err(unsupported(format!("its mask has {bands} bands")));
+    }
+    if !matches!(bits, 1 | 8) {
         return Err(unsupported(format!("its mask has samples of {bits} bits")));
     }
     let gray = without_inversion(bytes, decoder)?;
     let mut decoder = open(&gray)?;
     decoder.seek_to_image(index).map_err(|error| problem(&error))?;
-    let image = decoder.read_image().map_err(|error| problem(&error))?;
+    // Where no block of the mask is stored, nothing is valid.
+    let (image, _) = blocks::read(&mut decoder)?;
     let ::tiff::decoder::DecodingResult::U8(packed) = image else {
         return Err(unsupported("its mask does not have bytes"));
     };

@@ -2,6 +2,7 @@
 
 use ::tiff::tags::Tag;
 
+use super::calibration::text;
 use super::{Decoder, FormatError, malformed, problem, unsupported};
 
 /// Widths and heights of cells that differ by less than this part are equal: rounded numbers of a square cell.
@@ -14,6 +15,10 @@ const RASTER_TYPE: u16 = 1025;
 const PIXEL_IS_POINT: u16 = 2;
 /// `GeodeticCRSGeoKey`: a code of the EPSG registry, which is about the Earth.
 const GEODETIC_CRS: u16 = 2048;
+/// `ProjectedCRSGeoKey`: another code of the EPSG registry.
+const PROJECTED_CRS: u16 = 3072;
+/// `PCSCitationGeoKey` and `GTCitationGeoKey`, whose text may name the unit.
+const CITATIONS: [u16; 2] = [3073, 1026];
 /// `EllipsoidSemiMajorAxisGeoKey`, in meters.
 const SEMI_MAJOR_AXIS: u16 = 2057;
 /// `ProjLinearUnitsGeoKey` and `ProjLinearUnitSizeGeoKey`.
@@ -23,11 +28,64 @@ const HORIZONTAL_UNIT_SIZE: u16 = 3077;
 const VERTICAL_UNIT: u16 = 4099;
 /// The value of keys whose meaning other keys give.
 const USER_DEFINED: u16 = 32_767;
-/// The place of `GeoDoubleParams` among tags.
+/// The places of `GeoDoubleParams` and `GeoAsciiParams` among tags.
 const DOUBLE_PARAMETERS: u16 = 34_736;
+const TEXT_PARAMETERS: u16 = 34_737;
 /// Mars' equatorial radius, for maps in degrees that don't name their body's.
 const MARS_RADIUS_M: f64 = 3_396_190.0;
 const EARTH_RADIUS_M: f64 = 6_378_137.0;
+/// Codes of projected systems from the first to the last, of which the EPSG registry (v12.029) has only systems in meters.
+const METRIC_SYSTEMS: [(u16, u16); 49] = [
+    (2000, 2065),
+    (2067, 2135),
+    (2137, 2154),
+    (2161, 2193),
+    (2205, 2221),
+    (2290, 2313),
+    (2315, 2866),
+    (2931, 2963),
+    (2969, 2991),
+    (2995, 3079),
+    (3103, 3138),
+    (3141, 3166),
+    (3168, 3358),
+    (3366, 3403),
+    (3408, 3416),
+    (3460, 3478),
+    (3571, 3581),
+    (3701, 3727),
+    (3740, 3752),
+    (3761, 3989),
+    (3993, 4096),
+    (4462, 5469),
+    (5479, 5583),
+    (5627, 5644),
+    (5659, 6125),
+    (6204, 6387),
+    (6393, 6404),
+    (6634, 6784),
+    (7074, 7118),
+    (7374, 7586),
+    (7692, 8032),
+    (8677, 9741),
+    (9761, 10_480),
+    (10_626, 10_899),
+    (10_917, 10_979),
+    (11_012, 20_049),
+    (20_064, 22_293),
+    (22_307, 23_240),
+    (23_433, 24_048),
+    (24_200, 24_347),
+    (24_600, 26_722),
+    (26_814, 26_846),
+    (26_891, 27_260),
+    (27_391, 29_333),
+    (29_873, 30_179),
+    (30_339, 32_000),
+    (32_100, 32_161),
+    (32_180, 32_663),
+    (32_700, 32_766),
+];
 
 /// How the rows and columns of an image lie on the ground.
 pub(super) struct Georeference {
@@ -60,11 +118,7 @@ impl Georeference {
             )));
         }
         let is_in_degrees = keys.value(MODEL_TYPE) == Some(GEOGRAPHIC);
-        let unit_m = if is_in_degrees {
-            keys.radius_m().to_radians()
-        } else {
-            keys.unit_m(HORIZONTAL_UNIT, Some(HORIZONTAL_UNIT_SIZE))?.unwrap_or(1.0)
-        };
+        let unit_m = if is_in_degrees { keys.radius_m().to_radians() } else { keys.horizontal_unit_m()? };
         let is_point = keys.value(RASTER_TYPE) == Some(PIXEL_IS_POINT);
         let corner = if is_in_degrees { None } else { south_west(decoder, [x, y], is_point)? };
         Ok(Self {
@@ -108,6 +162,10 @@ fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
     if let &[x, x_of_row, _, _, y_of_column, y, ..] = matrix.as_slice() {
         if matrix.len() != 16 {
             return Err(malformed(format!("its ModelTransformation has {} numbers, not 16", matrix.len())));
+        }
+        // Programs without a georeference write the identity; GDAL passes it over, too.
+        if [0, 1, 3, 4, 5, 7].iter().all(|&place| matrix[place] == if place % 5 == 0 { 1.0 } else { 0.0 }) {
+            return Ok(None);
         }
         if x_of_row.abs().max(y_of_column.abs()) > SQUARE_TOLERANCE * x.abs().max(y.abs()) {
             return Err(unsupported(
@@ -165,13 +223,16 @@ fn doubles(decoder: &mut Decoder<'_>, tag: Tag) -> Result<Vec<f64>, FormatError>
 struct Keys {
     entries: Vec<u16>,
     doubles: Vec<f64>,
+    texts: String,
 }
 
 impl Keys {
     fn read(decoder: &mut Decoder<'_>) -> Result<Self, FormatError> {
         let entries =
             decoder.find_tag_unsigned_vec(Tag::GeoKeyDirectoryTag).map_err(|error| problem(&error))?;
-        Ok(Self { entries: entries.unwrap_or_default(), doubles: doubles(decoder, Tag::GeoDoubleParamsTag)? })
+        let doubles = doubles(decoder, Tag::GeoDoubleParamsTag)?;
+        let texts = text(decoder, Tag::GeoAsciiParamsTag)?.unwrap_or_default();
+        Ok(Self { entries: entries.unwrap_or_default(), doubles, texts })
     }
 
     fn entry(&self, id: u16) -> Option<&[u16]> {
@@ -185,6 +246,32 @@ impl Keys {
     fn double(&self, id: u16) -> Option<f64> {
         let entry = self.entry(id).filter(|entry| entry[1] == DOUBLE_PARAMETERS)?;
         self.doubles.get(usize::from(entry[3])).copied()
+    }
+
+    fn text(&self, id: u16) -> Option<&str> {
+        let entry = self.entry(id).filter(|entry| entry[1] == TEXT_PARAMETERS)?;
+        let start = usize::from(entry[3]);
+        self.texts.get(start..(start + usize::from(entry[2])).min(self.texts.len()))
+    }
+
+    /// The meters of the unit of coordinates: by its key, a text, or the system's code. Without all three, it is the meter.
+    fn horizontal_unit_m(&self) -> Result<f64, FormatError> {
+        if let Some(meters) = self.unit_m(HORIZONTAL_UNIT, Some(HORIZONTAL_UNIT_SIZE))? {
+            return Ok(meters);
+        }
+        if let Some(meters) = CITATIONS.iter().find_map(|&id| cited_unit_m(self.text(id)?)) {
+            return Ok(meters);
+        }
+        match self.value(PROJECTED_CRS) {
+            None | Some(0 | USER_DEFINED) => Ok(1.0),
+            Some(code) if METRIC_SYSTEMS.iter().any(|&(first, last)| (first..=last).contains(&code)) => {
+                Ok(1.0)
+            }
+            Some(code) => Err(unsupported(format!(
+                "it does not say its unit of length, which may not be the meter (EPSG code {code}); write it again, as with \
+                 `gdal_translate IN.tif OUT.tif`"
+            ))),
+        }
     }
 
     fn radius_m(&self) -> f64 {
@@ -211,4 +298,18 @@ impl Keys {
             unsupported(format!("its unit of length (EPSG code {code}) must be meters, kilometers or feet"))
         })
     }
+}
+
+/// The meters of the unit that a text names, as in `Units = us_survey_feet`.
+fn cited_unit_m(text: &str) -> Option<f64> {
+    text.to_ascii_lowercase().split("units").skip(1).find_map(|rest| {
+        let name = rest.trim_start().strip_prefix('=')?.trim_start();
+        let name = name.split(['|', '\n', ',', ';']).next()?;
+        if name.contains("feet") || name.contains("foot") {
+            let is_american = name.contains("survey") || name.split(['_', ' ']).any(|word| word == "us");
+            Some(if is_american { 1200.0 / 3937.0 } else { 0.3048 })
+        } else {
+            (name.starts_with("meter") || name.starts_with("metre")).then_some(1.0)
+        }
+    })
 }

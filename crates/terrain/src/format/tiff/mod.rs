@@ -3,12 +3,14 @@
 //! What would put heights in wrong places or give them wrong values when it is passed over is read, or refused by name.
 //! Files beside the map (`.tfw`, `.msk`, `.aux.xml`) are not looked at.
 
+mod blocks;
 mod calibration;
 mod directories;
 mod georeference;
 
 use std::io::Cursor;
 
+use ::tiff::TiffUnsupportedError;
 use ::tiff::decoder::{DecodingResult, Limits};
 use ::tiff::tags::{CompressionMethod, PhotometricInterpretation, Tag};
 
@@ -24,7 +26,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let mut decoder = open(bytes)?;
     let (width, height) = decoder.dimensions().map_err(|error| problem(&error))?;
     let count = checked_cell_count(u64::from(width), u64::from(height))?;
-    refuse_what_holds_no_heights(&mut decoder)?;
+    refuse_what_holds_no_heights(bytes, &mut decoder)?;
     let georeference = Georeference::read(&mut decoder)?;
     let mut calibration = Calibration::read(&mut decoder, georeference.vertical_unit_m)?;
     let alpha_band = alpha_band(&mut decoder)?;
@@ -34,16 +36,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let plain = if zero_is_white { Some(directories::without_inversion(bytes, &mut decoder)?) } else { None };
     let mask = directories::read_mask(bytes, &mut decoder)?;
     let mut decoder = open(plain.as_deref().unwrap_or(bytes))?;
-    let image = decoder.read_image().map_err(|error| problem(&error))?;
+    let (image, missing) = blocks::read(&mut decoder)?;
     if matches!(image, DecodingResult::F32(_)) {
         calibration.round_no_data_to_single();
     }
-    let (values, greatest) = to_doubles(image)?;
+    let (mut values, greatest) = to_doubles(image)?;
     if values.len() < count {
         return Err(malformed(format!("{} samples for {width} × {height} pixels", values.len())));
     }
     // The first band of several is the elevation.
     let bands = values.len() / count;
+    for block in missing {
+        for row in block.row..block.row + block.height {
+            let start = row * width as usize + block.column;
+            values[bands * start..bands * (start + block.width)].fill(calibration.stored_nothing());
+        }
+    }
     if alpha_band.is_some_and(|band| band >= bands) {
         return Err(unsupported("its transparency is stored separately from its heights (INTERLEAVE=BAND)"));
     }
@@ -70,15 +78,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
 }
 
 fn open(bytes: &[u8]) -> Result<Decoder<'_>, FormatError> {
+    let decoder = Decoder::new(Cursor::new(bytes)).map_err(|error| problem(&error))?;
+    Ok(decoder.with_limits(limits()))
+}
+
+/// As much memory as the largest map takes with 64 bits.
+fn limits() -> Limits {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MAX_CELL_COUNT as usize;
     limits.intermediate_buffer_size = 8 * MAX_CELL_COUNT as usize;
-    let decoder = Decoder::new(Cursor::new(bytes)).map_err(|error| problem(&error))?;
-    Ok(decoder.with_limits(limits))
+    limits
 }
 
 /// Names what can't be decoded, or would be decoded to something else than heights from the top left.
-fn refuse_what_holds_no_heights(decoder: &mut Decoder<'_>) -> Result<(), FormatError> {
+fn refuse_what_holds_no_heights(bytes: &[u8], decoder: &mut Decoder<'_>) -> Result<(), FormatError> {
     let compression = number(decoder, Tag::Compression)?.unwrap_or(1);
     let name = match u16::try_from(compression).map(CompressionMethod::from_u16_exhaustive) {
         Ok(
@@ -102,6 +115,10 @@ fn refuse_what_holds_no_heights(decoder: &mut Decoder<'_>) -> Result<(), FormatE
         return Err(unsupported(format!(
             "compression {name} is not supported; convert it, as with `gdal_translate -co COMPRESS=DEFLATE IN.tif OUT.tif`"
         )));
+    }
+    if compression != 1 {
+        let is_lzw = compression == u32::from(CompressionMethod::LZW.to_u16());
+        blocks::refuse_undecodable(bytes, decoder, is_lzw)?;
     }
     if number(decoder, Tag::PhotometricInterpretation)?
         == Some(PhotometricInterpretation::RGBPalette.to_u16().into())
@@ -166,7 +183,11 @@ fn unsupported(problem: impl Into<String>) -> FormatError {
 
 fn problem(error: &::tiff::TiffError) -> FormatError {
     match error {
+        ::tiff::TiffError::UnsupportedError(TiffUnsupportedError::UnknownInterpretation) => {
+            unsupported("its PhotometricInterpretation is missing, or not a known one")
+        }
         ::tiff::TiffError::UnsupportedError(error) => unsupported(error.to_string()),
+        ::tiff::TiffError::LimitsExceeded => unsupported("it would take more memory than a map may"),
         error => malformed(error.to_string()),
     }
 }
