@@ -12,7 +12,7 @@ use review::{Fate, review};
 use rmpl::program::LabelMode;
 use snapshot::Goal;
 use test_core::snapshot;
-use tpn::{ArcId, ArcKind, LabelId, Network, Top};
+use tpn::{ArcId, ArcKind, DecisionId, LabelId, Network, Top};
 use workbench::state::search::wording;
 
 /// Random missions of each kind.
@@ -196,6 +196,31 @@ fn sentences(network: &Network) -> Vec<String> {
     told
 }
 
+/// The choices that a sentence starts with, as `D1=0`, and the rest of it: `if D1 selects Charge() and D2 selects Dig(), …`.
+fn choices_of<'a>(network: &Network, sentence: &'a str) -> (Vec<String>, &'a str) {
+    let mut told = Vec::new();
+    let Some(mut rest) = sentence.strip_prefix("if ") else { return (told, sentence) };
+    loop {
+        let alternatives = network.decisions.iter().enumerate().flat_map(|(index, decision)| {
+            let decision_id = DecisionId::from_index(index);
+            (0..decision.alternatives.len() as u32).map(move |alternative| (decision_id, alternative))
+        });
+        let found = alternatives.filter_map(|(decision, alternative)| {
+            let name = Network::decision_name(decision);
+            let what = format!("{name} selects {}", network.alternative_name(decision, alternative));
+            let readable = network.readable(&what);
+            let after =
+                [what.as_str(), readable.as_ref()].into_iter().find_map(|what| rest.strip_prefix(what))?;
+            let after = after.strip_prefix(" and ").or(after.strip_prefix(", "))?;
+            Some((format!("{name}={alternative}"), after))
+        });
+        // The name of one alternative may begin that of another one.
+        let Some((choice, after)) = found.min_by_key(|(_, after)| after.len()) else { return (told, rest) };
+        told.push(choice);
+        rest = after;
+    }
+}
+
 /// The words of a text, names in one piece and without the number of their occurrence.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_part = |it: char| it.is_alphanumeric() || it == '_';
@@ -215,8 +240,9 @@ fn no_explanation_speaks_of_what_the_mission_has_not() {
             reasons_without_conditions += sentences.iter().filter(is_reason).count();
         }
         for sentence in sentences {
-            let found = strangers(&network, &text, &sentence);
-            if !found.is_empty() || !adds_up(&sentence) {
+            let (_, rest) = choices_of(&network, &sentence);
+            let found = strangers(&network, &text, rest);
+            if !found.is_empty() || !adds_up(rest) {
                 strange.push(format!("{name}: {sentence} {found:?}"));
             }
         }
@@ -243,19 +269,18 @@ fn why_an_alternative_was_not_taken_rests_on_the_choices_of_the_plan() {
                 let itself = format!("{}={}", choice.name, alternative.number);
                 let number = |name: &str| name.split('=').next()?.strip_prefix('D')?.parse::<usize>().ok();
                 let told: Vec<&str> = reason.split("; ").collect();
-                let rest_on: Vec<&str> = (told.iter())
-                    .filter_map(|it| it.strip_prefix("with ")?.split(": ").next())
-                    .flat_map(|it| it.split(", "))
-                    .collect();
-                let is_given = |it: &&str| **it == itself || made.iter().any(|made| made == *it);
-                let is_later = |it: &&str| number(it) > number(&itself);
+                let (rest_on, told): (Vec<_>, Vec<&str>) =
+                    told.into_iter().map(|it| choices_of(network, it)).unzip();
+                let rest_on: Vec<String> = rest_on.into_iter().flatten().collect();
+                let is_given = |it: &String| *it == itself || made.iter().any(|made| made == it);
+                let is_later = |it: &String| number(it) > number(&itself);
                 // What depends on a later choice is told of each way to make it.
                 let is_of_plan = rest_on.iter().all(is_given)
                     || (rest_on.iter().all(|it| is_given(it) || is_later(it)) && told.len() > 1);
                 // The order of the program alone never takes time.
                 let is_glue =
                     ["order in the mission", "no plan with it exists"].iter().any(|it| reason.contains(it));
-                let has_strangers = !strangers(network, &text, reason).is_empty();
+                let has_strangers = told.iter().any(|it| !strangers(network, &text, it).is_empty());
                 if !is_of_plan || is_glue || has_strangers || !told.iter().all(|it| adds_up(it)) {
                     wrong.push(format!("{name}, {itself} (plan {made:?}): {reason}"));
                 }

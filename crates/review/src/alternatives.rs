@@ -181,14 +181,18 @@ impl<'input> Examiner<'input> {
         if let Some(whole) = reasons.iter().position(|it| it.choices.iter().all(|it| choices.contains(it))) {
             reasons = vec![reasons.swap_remove(whole)];
         }
-        // That it is about this alternative goes without saying.
-        let itself = network.readable(&kirk::after_choices(network, &[other]));
+        let after = |choices: &[Choice]| network.readable(&kirk::after_choices(network, choices));
         let more = reasons.len().saturating_sub(MAX_REASONS);
         reasons.truncate(MAX_REASONS);
         let (mut told, mut spans) = (Vec::new(), Vec::new());
         for mut reason in reasons {
             name_blocked_in(&mut reason, self.network, self.undrivable);
-            told.push(reason.message.strip_prefix(&itself).unwrap_or(&reason.message).to_owned());
+            // That it is about this alternative is clear from its place.
+            let others: Vec<Choice> = reason.choices.iter().copied().filter(|it| *it != other).collect();
+            let what = reason.message.strip_prefix(&after(&reason.choices));
+            told.push(
+                what.map_or_else(|| reason.message.clone(), |what| format!("{}{what}", after(&others))),
+            );
             spans.extend(reason.spans);
         }
         match more {

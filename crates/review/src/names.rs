@@ -112,7 +112,7 @@ fn letters(form: impl Iterator<Item = char>) -> String {
 }
 
 /// Letters and digits that look like others, in small letters, where the standard tells them apart.
-const PAIRS: [(char, &str); 19] = [
+const PAIRS: [(char, &str); 26] = [
     ('w', "vv"),
     ('d', "cl"),
     ('m', "rn"),
@@ -132,6 +132,13 @@ const PAIRS: [(char, &str); 19] = [
     ('н', "h"),
     ('п', "n"),
     ('т', "t"),
+    ('ʙ', "b"),
+    ('ĸ', "k"),
+    ('ᴍ', "rn"),
+    ('ʜ', "h"),
+    ('ᴛ', "t"),
+    ('π', "n"),
+    ('ᴨ', "n"),
 ];
 
 #[cfg(test)]

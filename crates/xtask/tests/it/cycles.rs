@@ -24,7 +24,7 @@ const EXCEPTIONS: &[(&str, usize, &str)] = &[
     ),
     ("interchange", 7, "the classes, objects and methods of a model in Pamela refer to each other"),
     ("hca", 5, "an automaton has clocks and locks, which refer to its parts, and is stepped by them"),
-    ("terrain", 12, "to be parted"),
+    ("terrain", 13, "to be parted"),
     ("text_editing", 6, "to be parted"),
     ("workbench", 6, "to be parted"),
 ];
