@@ -1,10 +1,12 @@
 //! Monte Carlo runs of a review history, made again: anyone can write any figures into a file, and sign them.
 
+use std::path::Path;
+
 use mission::Manner;
 use review::Record;
 use review::record::Runs;
 use serde_json::{Value, json};
-use snapshot::{Robustness, Tally};
+use snapshot::{Goal, Robustness, Snapshot, Tally};
 
 use crate::deadline::{Deadline, TimeIsUp, Undecided};
 use crate::opened::Opened;
@@ -39,14 +41,16 @@ impl Repeated {
     }
 }
 
-/// Makes the runs that a history has of a content again; `None` if it has none. Fails when the time is up.
+/// Makes the runs that a history has of a content again, from the text of its snapshot; `None` if the history has none. `file` is
+/// where the text was read. Fails when the time is up.
 pub fn repeat(
-    mut mission: Opened,
-    (record, content_hash): (&Record, &str),
+    record: &Record,
+    (file, snapshot, goal, content_hash): (&Path, &Snapshot, &Goal, &str),
     seed: u64,
     deadline: Deadline,
 ) -> anyhow::Result<Option<Repeated>> {
     let Some(kept) = record.runs_of(content_hash) else { return Ok(None) };
+    let mut mission = Opened::new(file, snapshot.source.to_string(), goal.clone());
     let compiled = mission.compile()?;
     let is_possible = compiled.network().is_some_and(|network| kept.uncertainty.problem(network).is_none());
     if !is_possible {

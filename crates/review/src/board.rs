@@ -326,8 +326,8 @@ impl Record {
     }
 
     /// The latest approval that has not been taken back, with what was approved: of those that completed the board in force, of
-    /// those that completed a former board, or of all. Otherwise whoever approves first, or under rules with an earlier date,
-    /// would hide what changed from the others.
+    /// those that completed a former board, or of all. Otherwise the first person who approves, or who
+    /// approves under rules with an earlier date, would hide from the others what changed.
     pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
         let approvals: Vec<(&Entry, &Subject)> =
             self.standing_entries().filter_map(|entry| Some((entry, self.subject(entry)?))).collect();

@@ -246,7 +246,7 @@ impl Search<'_> {
     }
 }
 
-/// The item of all pairs of the same two activities: whoever acknowledges it acknowledges each of them, in its place.
+/// The item about all pairs of the same two activities. An acknowledgment of it covers each pair, in its place.
 fn line(network: &Network, plan: &Plan, (vehicle, pairs): (&str, &[Pair]), places: &Places<'_>) -> Line {
     let occurrence = |id: OccurrenceId| &network.occurrences[id.index()];
     let Pair { first, second } = pairs[0];

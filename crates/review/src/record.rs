@@ -55,8 +55,8 @@ pub struct Record {
     subjects: BTreeMap<String, Kept>,
     /// Texts that are known by their content hashes.
     known_sources: BTreeMap<String, String>,
-    /// What runs with chance came to, the latest content last. Anyone can write any figures into a document, and sign them, so
-    /// those of a document count only once they were made again.
+    /// The results of Monte Carlo runs, the latest content last. Anyone can write any figures into a document, and sign them.
+    /// So those of a document count only once they have been repeated.
     pub runs: Vec<Runs>,
 }
 

@@ -314,9 +314,9 @@ impl Record {
         self.at(&last)
     }
 
-    /// Returns the last entry that sets flight rules with an unknown key, and that no one has settled who knew of it: the owner
-    /// of this copy, with any rules, or a trusted person with a board that is not weaker. Otherwise, whoever leaves out the
-    /// key of the right person would get a weaker board.
+    /// Returns the last entry that sets flight rules with an unknown key, until someone who has seen it settles it: the owner of
+    /// this copy, with any rules, or a trusted person with a board that is not weaker. Otherwise, a reader who lacks the key
+    /// of the right person would get a weaker board.
     pub fn unknown_rules(&self) -> Option<&Entry> {
         let mut unknown: Vec<Unsettled<'_>> = Vec::new();
         // Which of the entries with unknown keys each entry follows, by their bits.

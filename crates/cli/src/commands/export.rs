@@ -127,7 +127,8 @@ impl Args {
         let status = match record {
             None => PlanStatus::Draft,
             Some(record) => {
-                let repeated = repeat(self.target.open()?, (&record, &hash), self.options.seed, deadline)?;
+                let content = (self.target.file.as_path(), snapshot, &goal, hash.as_str());
+                let repeated = repeat(&record, content, self.options.seed, deadline)?;
                 let mut review = review(snapshot, &goal, self.options.seed, &mut || false);
                 let found = repeated.map(|repeated| repeated.robustness);
                 review.hold_against(snapshot, record.rules(), found.as_ref(), &mut || false);

@@ -57,8 +57,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let robustness = if let Some(path) = &args.robustness {
         Some(read_robustness(path, &review.content_hash)?)
     } else {
-        let content = (&record, review.content_hash.as_str());
-        let repeated = repeat(args.target.open()?, content, args.options.seed, deadline)?;
+        let content =
+            (args.target.file.as_path(), &**snapshot, &args.target.goal()?, review.content_hash.as_str());
+        let repeated = repeat(&record, content, args.options.seed, deadline)?;
         repeated.map(|repeated| repeated.robustness)
     };
     review.hold_against(snapshot, &rules, robustness.as_ref(), &mut || false);

@@ -162,31 +162,25 @@ impl Verify {
 
     /// The review of the mission, or of the text that was approved last; nothing if there is neither.
     fn review(&self, record: &Record) -> anyhow::Result<Option<Reviewed>> {
-        let target = self.mission.clone().map(|file| Target {
-            file,
-            scenario: self.scenario.clone(),
-            activity: None,
-            bounds: None,
-        });
-        let approved = record.last_approval().map(|(_, approved)| approved);
-        let open = || match (&target, approved) {
-            (Some(target), _) => Ok(Some((target.open()?, target.goal()?, self.options.seed))),
-            (None, Some(approved)) => {
+        let (file, mission, goal, seed) = match (&self.mission, record.last_approval()) {
+            (Some(file), _) => {
+                let (path, scenario) = (file.clone(), self.scenario.clone());
+                let target = Target { file: path, scenario, activity: None, bounds: None };
+                (file, target.open()?, target.goal()?, self.options.seed)
+            }
+            (None, Some((_, approved))) => {
                 let goal: Goal = approved.goal.clone();
                 let mission = Opened::new(&self.file, approved.source.clone(), goal.clone());
-                Ok(Some((mission, goal, approved.seed)))
+                (&self.file, mission, goal, approved.seed)
             }
-            (None, None) => anyhow::Ok(None),
+            (None, None) => return Ok(None),
         };
-        let Some((mission, goal, seed)) = open()? else { return Ok(None) };
         let deadline = self.options.time_limit.start();
         let (snapshot, _) = mission.evaluate(seed, deadline)?;
         let limit = deadline.enforce(Undecided::Review, ("review-check", self.options.format));
         let mut review = review(&snapshot, &goal, seed, &mut || false);
-        let repeated = match open()? {
-            Some((mission, ..)) => repeat(mission, (record, &review.content_hash), seed, deadline)?,
-            None => None,
-        };
+        let content = (file.as_path(), &*snapshot, &goal, review.content_hash.as_str());
+        let repeated = repeat(record, content, seed, deadline)?;
         let found = repeated.as_ref().map(|repeated| &repeated.robustness);
         review.hold_against(&snapshot, record.rules(), found, &mut || false);
         limit.answered();

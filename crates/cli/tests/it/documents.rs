@@ -1,7 +1,7 @@
 //! The commands that write a mission's review and schedule, as they are called.
 
 use std::path::PathBuf;
-use std::process::Output;
+use std::process::{Command, Output};
 
 use review::keys::{KeyRing, Person, SecretKey};
 use review::record::{Act, Entry, LineKey, Record, Runs, Said, Subject, Who};
@@ -376,6 +376,14 @@ fn monte_carlo_runs_of_a_history_are_repeated() {
         );
         let report = enroute(&["report", SMALL, "--review", &path, "--trust", &keys, "--format", "json"]);
         let report: Value = serde_json::from_str(&written(&report)).expect("JSON");
+        // Standard input is read once.
+        let piped = Command::new(env!("CARGO_BIN_EXE_enroute"))
+            .args(["report", "-", "--review", &path, "--trust", &keys, "--format", "json"])
+            .stdin(std::fs::File::open(root().join(SMALL)).expect("the mission"))
+            .output()
+            .expect("the command runs");
+        let piped: Value = serde_json::from_str(&written(&piped)).expect("JSON");
+        assert_eq!(piped["robustness"]["text"], report["robustness"]["text"]);
         let line = format!("{} % of 20 runs reached the end", reached * 5);
         let said = &report["robustness"]["text"];
         assert!(said.as_str().is_some_and(|said| said.contains(&line)), "{said} {line}");

@@ -10,8 +10,8 @@ use workbench::state::automaton::Program;
 use workbench::state::program_proof::{MAX_FAULTS, ProgramProofCommand, can_step_through};
 
 use super::title;
-use crate::review::capital::sentence;
 use crate::{Context, counted};
+use workbench::sentence;
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

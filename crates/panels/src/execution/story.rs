@@ -10,7 +10,7 @@ use workbench::state::execution::has_come;
 use workbench::time_text;
 
 use crate::counted;
-use crate::review::capital::sentence;
+use workbench::sentence;
 
 /// An event of the story that the timeline marks.
 pub(crate) struct Turn {

@@ -13,7 +13,7 @@ use workbench::state::editor::EditorCommand;
 
 use crate::Context;
 use crate::plan::section;
-use crate::review::capital::sentence;
+use workbench::sentence;
 
 /// Shows why there is no plan.
 pub(crate) fn show(

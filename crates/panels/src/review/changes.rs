@@ -157,7 +157,7 @@ fn list(ui: &mut Ui, context: &Context<'_>, title: &str, lines: &[String]) {
     }
     ui.label(strong(title).color(context.tokens.text));
     for line in lines.iter().take(MAX_LINES) {
-        ui.label(RichText::new(super::capital::sentence(line)).color(context.tokens.text));
+        ui.label(RichText::new(workbench::sentence(line)).color(context.tokens.text));
     }
     if lines.len() > MAX_LINES {
         row::muted_word(ui, &format!("and {} more (see the report)", lines.len() - MAX_LINES));

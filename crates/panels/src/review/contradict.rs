@@ -8,8 +8,8 @@ use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::contradict::ContradictCommand;
 
-use super::capital::sentence;
 use crate::Context;
+use workbench::sentence;
 
 /// Characters of a line that are in the names of its buttons.
 const NAME_LENGTH: usize = 60;

@@ -7,8 +7,8 @@ use review::{Outcome, Review};
 use workbench::command::{Command, CommandSender};
 use workbench::state::rule_proof::RuleProofCommand;
 
-use super::capital::sentence;
 use crate::Context;
+use workbench::sentence;
 
 /// Under the line of a rule: the button that proves it in every plan, and what was found before.
 pub(super) fn of_rule(

@@ -127,10 +127,10 @@ fn show_entry(
         });
         let words = match &entry.act {
             Act::Acknowledge { line, text } => {
-                format!("{}\nReason: {text}", super::capital::sentence(&line.text))
+                format!("{}\nReason: {text}", workbench::sentence(&line.text))
             }
             Act::Waive { line, text, until } => {
-                format!("{}\nReason: {text} (until {until})", super::capital::sentence(&line.text))
+                format!("{}\nReason: {text} (until {until})", workbench::sentence(&line.text))
             }
             act => act.text().to_owned(),
         };
@@ -159,7 +159,7 @@ fn warning(
             icon::label(ui, Icon::Warning, tokens.error);
             ui.label(strong(title).color(tokens.error));
         });
-        ui.label(RichText::new(super::capital::sentence(text)).color(tokens.text));
+        ui.label(RichText::new(workbench::sentence(text)).color(tokens.text));
         if ui.button(label).clicked() {
             commands.send(Command::Review(save));
         }

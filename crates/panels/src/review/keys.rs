@@ -130,7 +130,7 @@ fn stranger(ui: &mut Ui, context: &Context<'_>, key: &PublicKey, name: &str, com
             }
         });
         if let Some(reason) = refused {
-            row::muted(ui, context, &super::capital::sentence(&format!("{reason}.")));
+            row::muted(ui, context, &workbench::sentence(&format!("{reason}.")));
         }
     });
 }

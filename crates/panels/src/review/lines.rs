@@ -8,9 +8,9 @@ use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 
-use super::capital::sentence;
 use super::people::People;
 use super::{List, contradict, every_plan, row};
+use workbench::sentence;
 
 /// Shows a line of any section.
 pub(super) fn line(

@@ -2,7 +2,6 @@
 //!
 //! Each line leads to its place in all other panels. A state is always a sign and a word, never a color alone.
 
-pub(crate) mod capital;
 pub(crate) mod changes;
 mod contradict;
 mod events;

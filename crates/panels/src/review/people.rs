@@ -232,7 +232,7 @@ impl People {
                         icon::label(ui, sign, color);
                         ui.label(strong(format!("{}, {}", waiver.state.name(), waiver.until)).color(color));
                         let font = egui::TextStyle::Body.resolve(ui.style());
-                        let line = super::capital::sentence(&waiver.line.text);
+                        let line = workbench::sentence(&waiver.line.text);
                         ui.label(crate::inline_code::job(&line, &font, tokens.text, ui.available_width()));
                     });
                     let words = format!("{}: {}", who(waiver.entry), waiver.entry.act.text());
@@ -517,7 +517,7 @@ impl People {
                 }
                 match &refused {
                     Err(_) if !standing.blockers().is_empty() => {}
-                    Err(reason) => row::muted_word(ui, &super::capital::sentence(&format!("{reason}."))),
+                    Err(reason) => row::muted_word(ui, &workbench::sentence(&format!("{reason}."))),
                     Ok(()) => {}
                 }
             });

@@ -257,7 +257,7 @@ fn rules_that_only_unknown_keys_have_set_block_an_approval() {
     assert!(told.contains("Eve, whose key is unknown, has set flight rules"), "{told}");
 }
 
-/// Whoever lacks the key of the right person would otherwise see a weaker board.
+/// Otherwise, a reader who lacks the key of the right person would see a weaker board.
 #[test]
 fn rules_with_an_unknown_key_wait_for_someone_who_has_seen_them() {
     let mut board = approved();

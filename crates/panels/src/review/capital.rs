@@ -1,3 +1,0 @@
-//! Texts as sentences.
-
-pub(crate) use workbench::sentence;
